@@ -1,0 +1,257 @@
+// The bench: passes over the path, strategies interleaved pass by pass, truth first.
+// SPDX-License-Identifier: MIT
+// A pass walks the whole path with one strategy, so that a culler's history sees consecutive frames.
+#include "bench.h"
+#include "images.h"
+#include "progress.h"
+#include "statistics.h"
+#include "strategy.h"
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct run {
+    const bench_request *q;
+    report *r;
+    renderer *g;
+    truth truth;
+    strategy *strategies;
+    bench_result *out;
+    progress bar;
+    double *scratch; // of views, and of repeats behind them
+} run;
+
+static int needs_renderer(const run *b)
+{
+    for (uint32_t k = 0; k < b->q->strategy_count; ++k)
+        if (b->strategies[k].chain->uses_renderer) return 1;
+    return b->q->truth == BENCH_TRUTH || b->q->images;
+}
+
+static result open_strategies(run *b)
+{
+    for (uint32_t k = 0; k < b->q->strategy_count; ++k) {
+        const result done = strategy_open(b->q, b->q->strategies[k].spec, NULL, b->r, &b->strategies[k]);
+        if (done != RESULT_OK) return done;
+    }
+    return RESULT_OK;
+}
+
+// Only now is it known whether anything draws or tests.
+static result open_renderer(run *b)
+{
+    const renderer_options options = {.target = RENDERER_HEADLESS, .width_px = b->q->width_px, .height_px = b->q->height_px};
+    result done = renderer_open(&options, b->q->services->memory, b->r, &b->g);
+    if (done == RESULT_OK) done = renderer_upload(b->g, b->q->scene, b->r);
+    for (uint32_t k = 0; k < b->q->strategy_count && done == RESULT_OK; ++k) {
+        b->strategies[k].g = b->g;
+        done = render_layout_open(b->g, b->strategies[k].chain->order, b->r, &b->strategies[k].layout);
+    }
+    if (done != RESULT_OK) return done;
+    renderer_query_latency(b->g, b->q->query_latency);
+    b->out->gl_used = 1;
+    snprintf(b->out->gl_name, sizeof b->out->gl_name, "%s", renderer_name(b->g));
+    return RESULT_OK;
+}
+
+static result find_truth(run *b)
+{
+    const truth_request request = {b->q->scene, b->q->width_px, b->q->height_px, FACES_ALL};
+    result done = truth_open(&request, b->q->services->memory, b->r, &b->truth);
+    for (uint32_t v = 0; v < b->q->path->count && done == RESULT_OK; ++v) {
+        progress_tell(&b->bar, "truth");
+        done = truth_add_view(&b->truth, b->g, &b->q->path->cameras[v], b->r);
+    }
+    return done;
+}
+
+// ---- Counting ----
+
+static void add_counts(bench_row *row, const strategy *s, const strategy_view *v)
+{
+    const view_counts c = strategy_count(s, &v->set);
+    row->polygons_drawn += (double)c.polygons;
+    row->triangles_drawn += (double)c.triangles;
+    row->items_drawn += (double)c.items;
+    row->runs += (double)c.runs;
+    row->movers_drawn += (double)c.mover_polygons;
+    row->queries += v->stats.queries;
+    row->steps += v->stats.steps;
+    row->draw_calls += v->draw_calls;
+    row->state_changes += v->state_changes;
+    row->portal_merges += v->stats.portal_merges;
+    row->limits_hit += v->stats.limits_hit;
+    row->stalls += v->stats.stalls;
+    row->faults += v->stats.faults;
+}
+
+static void add_truth(bench_row *row, const truth_view *t)
+{
+    row->polygons_visible += (double)t->polygons_visible;
+    row->polygons_items += (double)t->polygons_items;
+    row->items_visible += (double)t->items_visible;
+    row->floor += (double)t->floor_items;
+    row->movers_visible += (double)t->mover_polygons_visible;
+}
+
+// Sums over the path become means; missed counts are the worst pass of each view.
+static void close_row(run *b, bench_row *row, const strategy *s)
+{
+    const double views = b->q->path->count;
+    row->excess = row->polygons_visible > 0 ? row->polygons_drawn / row->polygons_visible : 0;
+    row->excess_items = row->polygons_items > 0 ? row->polygons_drawn / row->polygons_items : 0;
+    double *const means[] = {&row->polygons_drawn, &row->polygons_visible, &row->polygons_items, &row->triangles_drawn, &row->items_drawn,
+                             &row->items_visible,  &row->runs, &row->floor, &row->movers_drawn, &row->movers_visible, &row->queries,
+                             &row->steps, &row->draw_calls, &row->state_changes};
+    for (size_t i = 0; i < sizeof means / sizeof *means; ++i) *means[i] /= views;
+    for (uint32_t v = 0; v < b->q->path->count; ++v) {
+        row->missed_pixels += s->missed[v];
+        if (s->missed[v] > row->missed_pixels_max) {
+            row->missed_pixels_max = s->missed[v];
+            row->worst_view = v;
+        }
+    }
+    row->promises = s->chain->promises;
+    row->build_ms = s->chain->build_ms;
+    row->index_bytes = s->chain->index_bytes;
+}
+
+// Each view's median over the passes; of those the median, mean and tail over the path.
+static void close_times(run *b, bench_row *row, const strategy *s)
+{
+    const uint32_t views = b->q->path->count, repeat = b->q->repeat;
+    double *of_view = b->scratch, *of_pass = b->scratch + views;
+    for (int what = 0; what < 3; ++what) {
+        for (uint32_t v = 0; v < views; ++v) {
+            for (uint32_t p = 0; p < repeat; ++p) {
+                const size_t at = (size_t)p * views + v;
+                of_pass[p] = what == 0 ? s->cull_ns[at] : what == 1 ? s->gl_ms[at] : s->gl_ms[at] + s->cull_ns[at] * 1e-6;
+            }
+            of_view[v] = percentile(of_pass, repeat, 0.5);
+        }
+        if (what == 1) row->gl_ms = percentile(of_view, views, 0.5);
+        if (what == 2) row->total_ms = percentile(of_view, views, 0.5);
+        if (what > 0) continue;
+        row->cull_ns_mean = mean(of_view, views);
+        row->cull_ns_p95 = percentile(of_view, views, 0.95);
+        row->cull_ns_p99 = percentile(of_view, views, 0.99);
+        row->cull_ns = percentile(of_view, views, 0.5);
+    }
+}
+
+// ---- Passes ----
+
+// Draws D alone, in the truth's order: the picture must be the truth's, or more was drawn than was said.
+static result compare_alone(run *b, uint32_t k, uint32_t view)
+{
+    const camera *c = &b->q->path->cameras[view];
+    const size_t pixels = (size_t)b->q->width_px * b->q->height_px;
+    id_picture alone;
+    if (id_picture_open(b->q->scene, b->q->width_px, b->q->height_px, b->q->services->memory, &alone) != RESULT_OK) return report_no_memory(b->r, NULL);
+    const id_request all = {.camera = c}, drawn = {.camera = c, .item_bits = b->strategies[k].drawn_bits};
+    result done = renderer_id_picture(b->g, &all, b->r, &b->truth.picture);
+    if (done == RESULT_OK) done = renderer_id_picture(b->g, &drawn, b->r, &alone);
+    if (done == RESULT_OK) b->out->rows[k].picture_differs = memcmp(alone.triangles, b->truth.picture.triangles, pixels * sizeof(uint32_t)) != 0;
+    id_picture_free(&alone, b->q->services->memory);
+    return done;
+}
+
+static result run_pass(run *b, uint32_t pass, uint32_t k)
+{
+    strategy *s = &b->strategies[k];
+    bench_row *row = &b->out->rows[k];
+    if (b->g) renderer_forget_tests(b->g);
+    uint64_t missed_items = 0;
+    for (uint32_t v = 0; v < b->q->path->count; ++v) {
+        strategy_view view;
+        progress_tell(&b->bar, row->name);
+        result done = strategy_run_view(s, v, RENDER_SHADED, b->r, &view);
+        if (done != RESULT_OK) return done;
+        const size_t at = (size_t)pass * b->q->path->count + v;
+        s->cull_ns[at] = view.stats.cull_ns;
+        s->gl_ms[at] = view.gl_ms;
+        if (pass == 0) add_counts(row, s, &view);
+        if (b->q->truth != BENCH_TRUTH) continue;
+        const view_misses m = strategy_misses(s, &b->truth, v);
+        missed_items += m.items;
+        if (m.pixels > s->missed[v]) s->missed[v] = m.pixels;
+        if (pass == 0) add_truth(row, (const truth_view *)b->truth.views.items + v);
+        if (pass == 0 && v == b->q->path->count / 2 && m.pixels == 0) done = compare_alone(b, k, v);
+        if (done != RESULT_OK) return done;
+    }
+    if (missed_items > row->missed_items) row->missed_items = missed_items;
+    return RESULT_OK;
+}
+
+static result run_passes(run *b)
+{
+    const uint32_t count = b->q->strategy_count;
+    for (uint32_t pass = 0; pass < b->q->repeat; ++pass)
+        for (uint32_t i = 0; i < count; ++i) {
+            const result done = run_pass(b, pass, (i + pass) % count); // another one starts each pass
+            if (done != RESULT_OK) return done;
+        }
+    return RESULT_OK;
+}
+
+static result open_result(const bench_request *q, report *r, bench_result *out)
+{
+    const scene *s = q->scene;
+    *out = (bench_result){.memory = q->services->memory, .row_count = q->strategy_count, .views = q->path->count,
+                          .pixels = (uint64_t)q->width_px * q->height_px, .items_total = s->item_count};
+    out->rows = memory_alloc_zeroed(out->memory, q->strategy_count, sizeof *out->rows);
+    if (!out->rows) return report_no_memory(r, NULL);
+    for (uint32_t k = 0; k < q->strategy_count; ++k) out->rows[k].name = q->strategies[k].name;
+    for (uint32_t i = 0; i < s->item_count; ++i) out->polygons_total += s->items[i].polygon_count;
+    return RESULT_OK;
+}
+
+static result run_all(run *b)
+{
+    result done = open_strategies(b);
+    if (done == RESULT_OK && needs_renderer(b)) done = open_renderer(b);
+    const uint32_t truth_views = b->q->truth == BENCH_TRUTH ? b->q->path->count : 0;
+    b->bar = progress_start((uint64_t)truth_views + (uint64_t)b->q->path->count * b->q->strategy_count * b->q->repeat);
+    if (done == RESULT_OK && truth_views) done = find_truth(b);
+    if (done == RESULT_OK) done = run_passes(b);
+    for (uint32_t k = 0; k < b->q->strategy_count && done == RESULT_OK; ++k) {
+        close_row(b, &b->out->rows[k], &b->strategies[k]);
+        close_times(b, &b->out->rows[k], &b->strategies[k]);
+        if (b->q->images) done = bench_images(&b->strategies[k], &b->truth, &b->out->rows[k], b->r);
+    }
+    progress_end(&b->bar);
+    b->out->plugins_opened = loader_libraries_open(b->q->plugins);
+    if (done == RESULT_OK && b->g && renderer_errors(b->g)) done = report_error(b->r, NULL, 0, "%u OpenGL errors; the figures are not to be trusted", renderer_errors(b->g));
+    return done;
+}
+
+result bench_run(const bench_request *q, report *r, bench_result *out)
+{
+    const allocator *memory = q->services->memory;
+    result done = open_result(q, r, out);
+    if (done != RESULT_OK) return done;
+    const size_t scratch = (size_t)q->path->count + q->repeat;
+    run b = {.q = q, .r = r, .out = out};
+    b.strategies = memory_alloc_zeroed(memory, q->strategy_count, sizeof *b.strategies);
+    b.scratch = memory_alloc(memory, scratch, sizeof *b.scratch);
+    done = b.strategies && b.scratch ? run_all(&b) : report_no_memory(r, NULL);
+    for (uint32_t k = 0; b.strategies && k < q->strategy_count; ++k) strategy_close(&b.strategies[k]);
+    truth_close(&b.truth);
+    renderer_close(b.g);
+    memory_free(memory, b.strategies, q->strategy_count, sizeof *b.strategies);
+    memory_free(memory, b.scratch, scratch, sizeof *b.scratch);
+    if (done != RESULT_OK) bench_result_free(out);
+    return done;
+}
+
+void bench_result_free(bench_result *b)
+{
+    memory_free(b->memory, b->rows, b->row_count, sizeof *b->rows);
+    b->rows = NULL;
+}
+
+uint32_t bench_check_failed(const bench_row *row)
+{
+    if (row->picture_differs) return 1;
+    return row->promises & CULL_SAMPLED && (row->missed_pixels || row->missed_items);
+}

@@ -1,0 +1,65 @@
+// The bench: every strategy over the same path of one scene; what it draws, what that costs, what it gets wrong.
+// SPDX-License-Identifier: MIT
+#ifndef PORTCULLIS_BENCH_BENCH_H
+#define PORTCULLIS_BENCH_BENCH_H
+
+#include "../host/core/frame.h"
+#include "../host/import/views.h"
+#include "../host/render/render.h"
+#include "truth.h"
+
+typedef enum bench_truth { BENCH_TRUTH, BENCH_NO_TRUTH } bench_truth;
+typedef enum bench_ids { BENCH_RUNS, BENCH_IDS } bench_ids; // IDS: writing every drawn id belongs to cull_ns
+
+typedef struct bench_strategy_request {
+    const char *name;       // as it stands in the results
+    const chain_spec *spec; // of the one zone
+} bench_strategy_request;
+
+typedef struct bench_request {
+    const scene *scene;
+    const camera_path *path;
+    const bench_strategy_request *strategies;
+    loader *plugins;
+    const host_services *services;
+    uint32_t strategy_count, width_px, height_px, repeat, query_latency;
+    bench_truth truth;
+    bench_ids ids;
+    const char *images; // folder for pictures, NULL: none
+} bench_request;
+
+// One strategy's counters: as the JSON names them. Means are per view, sums over the path.
+typedef struct bench_row {
+    const char *name;
+    cull_promises promises;
+    double cull_ns, cull_ns_mean, cull_ns_p95, cull_ns_p99, gl_ms, total_ms; // over views of each view's median
+    double polygons_drawn, polygons_visible, polygons_items, triangles_drawn, items_drawn, items_visible, runs, floor;
+    double movers_drawn, movers_visible, queries, steps, draw_calls, state_changes;
+    double excess, excess_items, build_ms;
+    uint64_t missed_pixels, missed_items, missed_pixels_max;
+    uint64_t portal_merges, limits_hit, stalls, faults, index_bytes;
+    uint32_t worst_view, picture_differs; // picture_differs: drawing D alone gave another picture than the truth
+} bench_row;
+
+typedef struct bench_result {
+    bench_row *rows; // strategy_count
+    uint32_t row_count, views, plugins_opened, gl_used;
+    uint64_t pixels, polygons_total, items_total;
+    char gl_name[256];
+    const allocator *memory;
+} bench_result;
+
+// [main] Reports progress on a terminal. Free with bench_result_free.
+result bench_run(const bench_request *q, report *r, bench_result *out);
+void bench_result_free(bench_result *b);
+// 1 when a strategy that promises it missed an item or a pixel, or drew what it did not say.
+uint32_t bench_check_failed(const bench_row *row);
+
+typedef struct bench_labels { const char *scene, *path; } bench_labels; // for names and context
+
+// The table for people; free both texts with memory_free(memory, text, size + 1, 1).
+result bench_table(const bench_result *b, const bench_labels *labels, const allocator *memory, char **out_text, size_t *out_size);
+// Google Benchmark's JSON. What was not measured is null.
+result bench_json(const bench_result *b, const bench_request *q, const bench_labels *labels, char **out_text, size_t *out_size);
+
+#endif

@@ -1,0 +1,21 @@
+// Pictures of what a strategy draws, and of what it misses: in magenta, over a dimmed shaded picture.
+// SPDX-License-Identifier: MIT
+#ifndef PORTCULLIS_BENCH_IMAGES_H
+#define PORTCULLIS_BENCH_IMAGES_H
+
+#include "strategy.h"
+
+typedef enum picture_kind { PICTURE_DRAWN, PICTURE_ERROR } picture_kind;
+typedef struct picture_request {
+    uint32_t view;
+    render_mode mode; // of PICTURE_DRAWN
+    picture_kind kind;
+} picture_request;
+
+// Culls and draws one view into rgba (width * height * 4, top row first). The strategy must have a renderer. t may be
+// NULL but for PICTURE_ERROR. *out_missed: pixels in magenta.
+result picture_of(strategy *s, truth *t, const picture_request *q, report *r, uint8_t *rgba, uint64_t *out_missed);
+// bench --images: NAME-view-N.png of the path's middle view, NAME-missed-N.png of the worst one where something is missed.
+result bench_images(strategy *s, truth *t, const bench_row *row, report *r);
+
+#endif

@@ -1,0 +1,118 @@
+// The bench's results in Google Benchmark's JSON shape.
+// SPDX-License-Identifier: MIT
+#define _GNU_SOURCE
+#include "bench.h"
+
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#ifndef PORTCULLIS_COMMIT
+#define PORTCULLIS_COMMIT "unknown"
+#endif
+#ifndef PORTCULLIS_VERSION
+#define PORTCULLIS_VERSION "unknown"
+#endif
+
+static void cpu_model(char *out, size_t size)
+{
+    snprintf(out, size, "unknown");
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    char line[256];
+    while (file && fgets(line, sizeof line, file)) {
+        const char *value = strncmp(line, "model name", 10) == 0 ? strchr(line, ':') : NULL;
+        if (!value) continue;
+        snprintf(out, size, "%.*s", (int)strcspn(value + 2, "\n"), value + 2);
+        break;
+    }
+    if (file) fclose(file);
+}
+
+static json_t *load_average(void)
+{
+    double load[3] = {0};
+    json_t *list = json_array();
+    const int got = getloadavg(load, 3);
+    for (int i = 0; i < got; ++i) json_array_append_new(list, json_real(load[i]));
+    return list;
+}
+
+static json_t *context_of(const bench_result *b, const bench_request *q, const bench_labels *labels)
+{
+    char date[40], host[256] = "", model[160], hash[24];
+    const time_t now = time(NULL);
+    struct tm local;
+    strftime(date, sizeof date, "%Y-%m-%dT%H:%M:%S%z", localtime_r(&now, &local));
+    gethostname(host, sizeof host - 1);
+    cpu_model(model, sizeof model);
+    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)q->scene->hash);
+    return json_pack("{s:s, s:s, s:i, s:s, s:o, s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:i, s:i, s:i, s:s, s:i}", "date", date, "host_name", host,
+                     "num_cpus", (int)sysconf(_SC_NPROCESSORS_ONLN), "cpu_model", model, "load_avg", load_average(), "library_version", PORTCULLIS_VERSION,
+                     "library_build_type",
+#ifdef NDEBUG
+                     "release",
+#else
+                     "debug",
+#endif
+                     "commit", PORTCULLIS_COMMIT, "gl_renderer", b->gl_used ? b->gl_name : "none", "scene", labels->scene, "scene_hash", hash,
+                     "width_px", (int)q->width_px, "height_px", (int)q->height_px, "repeat", (int)q->repeat, "query_latency", (int)q->query_latency,
+                     "path", labels->path, "json_schema_version", 1);
+}
+
+typedef struct counter { const char *name; double value; } counter;
+
+static void set_counters(json_t *entry, const counter *counters, size_t count, int measured)
+{
+    for (size_t i = 0; i < count; ++i) {
+        const double value = counters[i].value;
+        json_t *number = !measured ? json_null() : value == (double)(json_int_t)value && value < 1e15 ? json_integer((json_int_t)value) : json_real(value);
+        json_object_set_new(entry, counters[i].name, number);
+    }
+}
+
+static json_t *entry_of(const bench_result *b, const bench_request *q, const bench_labels *labels, const bench_row *row)
+{
+    char name[8192];
+    snprintf(name, sizeof name, "%s/%s/%s", labels->scene, labels->path, row->name);
+    json_t *entry = json_pack("{s:s, s:s, s:s, s:i, s:i, s:f, s:f, s:s}", "name", name, "run_name", name, "run_type", "iteration", "repetitions",
+                              (int)q->repeat, "iterations", (int)(q->repeat * b->views), "real_time", row->cull_ns, "cpu_time", row->cull_ns, "time_unit", "ns");
+    if (!entry) return NULL;
+    const counter always[] = {
+        {"views", b->views}, {"pixels", (double)b->pixels}, {"polygons_total", (double)b->polygons_total}, {"polygons_drawn", row->polygons_drawn},
+        {"triangles_drawn", row->triangles_drawn}, {"items_total", (double)b->items_total}, {"items_drawn", row->items_drawn}, {"runs", row->runs},
+        {"cull_ns_mean", row->cull_ns_mean}, {"cull_ns_p95", row->cull_ns_p95}, {"cull_ns_p99", row->cull_ns_p99},
+        {"portal_merges", (double)row->portal_merges}, {"limits_hit", (double)row->limits_hit}, {"stalls", (double)row->stalls},
+        {"movers_drawn", row->movers_drawn}, {"build_ms", row->build_ms}, {"index_bytes", (double)row->index_bytes}, {"queries", row->queries},
+        {"steps", row->steps}, {"faults", (double)row->faults}, {"plugins_opened", b->plugins_opened}, {"gl_used", b->gl_used}};
+    const counter of_gl[] = {{"gl_ms", row->gl_ms}, {"total_ms", row->total_ms}, {"draw_calls", row->draw_calls}, {"state_changes", row->state_changes}};
+    const counter of_truth[] = {
+        {"polygons_visible", row->polygons_visible}, {"polygons_items", row->polygons_items}, {"items_visible", row->items_visible}, {"floor", row->floor},
+        {"excess", row->excess}, {"excess_items", row->excess_items}, {"missed_pixels", (double)row->missed_pixels},
+        {"missed_items", (double)row->missed_items}, {"missed_pixels_max", (double)row->missed_pixels_max}, {"movers_visible", row->movers_visible}};
+    set_counters(entry, always, sizeof always / sizeof *always, 1);
+    set_counters(entry, of_gl, sizeof of_gl / sizeof *of_gl, b->gl_used != 0);
+    set_counters(entry, of_truth, sizeof of_truth / sizeof *of_truth, q->truth == BENCH_TRUTH);
+    return entry;
+}
+
+result bench_json(const bench_result *b, const bench_request *q, const bench_labels *labels, char **out_text, size_t *out_size)
+{
+    json_t *benchmarks = json_array(), *context = context_of(b, q, labels);
+    json_t *root = benchmarks && context ? json_pack("{s:O, s:O}", "context", context, "benchmarks", benchmarks) : NULL;
+    int good = root != NULL;
+    for (uint32_t i = 0; good && i < b->row_count; ++i) good = json_array_append_new(benchmarks, entry_of(b, q, labels, &b->rows[i])) == 0;
+    char *text = good ? json_dumps(root, JSON_INDENT(2)) : NULL;
+    json_decref(context);
+    json_decref(benchmarks);
+    json_decref(root);
+    if (!text) return RESULT_NO_MEMORY;
+    const allocator *memory = q->services->memory;
+    *out_size = strlen(text);
+    *out_text = memory_alloc(memory, *out_size + 1, 1);
+    if (*out_text) memcpy(*out_text, text, *out_size + 1);
+    free(text);
+    return *out_text ? RESULT_OK : RESULT_NO_MEMORY;
+}

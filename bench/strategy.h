@@ -1,0 +1,46 @@
+// A strategy in the bench: its chain, viewer, layout, samples of time, and the set drawn in the current view.
+// SPDX-License-Identifier: MIT
+#ifndef PORTCULLIS_BENCH_STRATEGY_H
+#define PORTCULLIS_BENCH_STRATEGY_H
+
+#include "../host/core/runs.h"
+#include "bench.h"
+
+typedef struct view_counts { // of one view: the set D
+    uint64_t polygons, triangles, items, runs, mover_polygons;
+} view_counts;
+
+typedef struct view_misses { uint64_t pixels, items; } view_misses;
+
+typedef struct strategy {
+    const bench_request *q;
+    chain *chain;
+    viewer *viewer;
+    renderer *g;           // NULL: no GL
+    render_layout *layout; // with a renderer
+    uint32_t *drawn_bits;  // D by global id, movers too; also what stands only in a picture
+    uint32_t *order;       // chain's order, padded for runs_kernel.expand; NULL: none
+    uint32_t *ids;         // for BENCH_IDS
+    const runs_kernel *kernel;
+    double *cull_ns, *gl_ms; // repeat * views samples
+    uint64_t *missed;        // pixels a view, the worst pass
+    double ids_ns;
+    uint32_t words, order_count;
+} strategy;
+
+result strategy_open(const bench_request *q, const chain_spec *spec, renderer *g, report *r, strategy *out);
+void strategy_close(strategy *s);
+
+// One view: culls, draws where there is a renderer, leaves D in drawn_bits. gl_ms: 0 without.
+typedef struct strategy_view {
+    frame_stats stats;
+    visible_set set;
+    double gl_ms;
+    uint32_t draw_calls, state_changes;
+} strategy_view;
+result strategy_run_view(strategy *s, uint32_t view, render_mode mode, report *r, strategy_view *out);
+
+view_counts strategy_count(const strategy *s, const visible_set *set);
+view_misses strategy_misses(const strategy *s, const truth *t, uint32_t view);
+
+#endif

@@ -1,0 +1,119 @@
+// What the subcommands share: search path, exit codes, small parsers.
+// SPDX-License-Identifier: MIT
+#define _GNU_SOURCE
+#include "app.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { FOLDERS_MOST = 64, PATH_BYTES = 4096 };
+
+typedef struct folders {
+    const char *names[FOLDERS_MOST];
+    uint32_t count;
+} folders;
+
+static void add_folder(folders *f, const char *name)
+{
+    if (name && *name && f->count < FOLDERS_MOST) f->names[f->count++] = name;
+}
+
+// An empty part would mean the current folder to other tools; here it means nothing.
+static void add_path_variable(app *a, folders *f)
+{
+    const char *at = getenv("PORTCULLIS_PLUGIN_PATH");
+    while (at && *at) {
+        const size_t length = strcspn(at, ":");
+        add_folder(f, length ? arena_text(&a->texts, at, length) : NULL);
+        at += length + (at[length] == ':');
+    }
+}
+
+static void add_beside_executable(app *a, folders *f)
+{
+    static const char *const places[] = {"../lib/portcullis", "../plugins"}; // installed; build tree
+    char path[PATH_BYTES];
+    const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 32);
+    if (length <= 0) return;
+    path[length] = 0;
+    char *slash = strrchr(path, '/');
+    if (!slash) return;
+    for (size_t i = 0; i < sizeof places / sizeof *places; ++i) {
+        snprintf(slash + 1, 32, "%s", places[i]);
+        add_folder(f, arena_text(&a->texts, path, strlen(path)));
+    }
+}
+
+// A bare file name would be searched for by the system; it is meant to be a file.
+static const char *explicit_file(app *a, const char *name)
+{
+    char path[PATH_BYTES];
+    if (strchr(name, '/')) return name;
+    snprintf(path, sizeof path, "./%s", name);
+    return arena_text(&a->texts, path, strlen(path));
+}
+
+result app_open(app *a, const app_plugin_files *files)
+{
+    *a = (app){.memory = allocator_heap(), .report = report_to_stderr()};
+    a->texts = arena_make(a->memory);
+    host_services_fill(&a->services, a->memory, &a->report);
+    folders f = {0};
+    add_path_variable(a, &f);
+    add_beside_executable(a, &f);
+    loader_options options = {.folders = f.names, .folder_count = f.count};
+    const char *explicit_files[APP_PLUGINS_MOST];
+    for (uint32_t i = 0; files && i < files->count; ++i)
+        if ((explicit_files[options.file_count] = explicit_file(a, files->files[i]))) options.file_count++;
+    options.files = explicit_files;
+    return loader_open(&options, a->memory, &a->report, &a->plugins);
+}
+
+void app_close(app *a)
+{
+    loader_close(a->plugins);
+    scene_free(a->scene, a->memory);
+    arena_free(&a->texts);
+}
+
+int app_exit_code(result done)
+{
+    return done == RESULT_OK ? EXIT_GOOD : done == RESULT_NO_GL ? EXIT_NO_GL : EXIT_USAGE;
+}
+
+int parse_count(const char *text, uint32_t least, uint32_t most, uint32_t *out)
+{
+    char *end;
+    if (*text < '0' || *text > '9') return 0;
+    const unsigned long value = strtoul(text, &end, 10);
+    if (*end || end - text > 10 || value < least || value > most) return 0;
+    *out = (uint32_t)value;
+    return 1;
+}
+
+int parse_size(const char *text, app_size *out)
+{
+    char number[2][16];
+    const char *cross = strchr(text, 'x');
+    if (!cross || cross == text || (size_t)(cross - text) >= sizeof number[0] || strlen(cross + 1) >= sizeof number[1]) return 0;
+    snprintf(number[0], sizeof number[0], "%.*s", (int)(cross - text), text);
+    snprintf(number[1], sizeof number[1], "%s", cross + 1);
+    return parse_count(number[0], 1, 8192, &out->width_px) && parse_count(number[1], 1, 8192, &out->height_px);
+}
+
+int parse_doors(const char *text, door_state *out)
+{
+    if (strcmp(text, "open") == 0) *out = DOORS_OPEN;
+    else if (strcmp(text, "shut") == 0) *out = DOORS_SHUT;
+    else return 0;
+    return 1;
+}
+
+const char *scene_label(const char *path, arena *texts)
+{
+    const char *slash = strrchr(path, '/');
+    const char *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+    return arena_text(texts, name, dot && dot != name ? (size_t)(dot - name) : strlen(name));
+}

@@ -1,0 +1,46 @@
+// The one executable: its subcommands, and what they share.
+// SPDX-License-Identifier: MIT
+#ifndef PORTCULLIS_HOST_APP_H
+#define PORTCULLIS_HOST_APP_H
+
+#include "../core/chain.h"
+#include "../import/import.h"
+
+enum { EXIT_GOOD = 0, EXIT_CHECK_FAILED = 1, EXIT_USAGE = 2, EXIT_NO_GL = 3 };
+
+typedef int (*app_command)(int argc, char **argv); // argv[0] is "portcullis NAME"; returns the exit code
+
+int command_plugins(int argc, char **argv);
+int command_info(int argc, char **argv);
+int command_bench(int argc, char **argv);
+int command_render(int argc, char **argv);
+int command_generate(int argc, char **argv);
+
+// What every command that loads cullers holds.
+typedef struct app {
+    const allocator *memory;
+    report report;
+    arena texts;
+    host_services services;
+    loader *plugins;
+    scene *scene;
+} app;
+
+enum { APP_PLUGINS_MOST = 64 };
+typedef struct app_plugin_files {
+    const char *files[APP_PLUGINS_MOST];
+    uint32_t count;
+} app_plugin_files;
+
+// Search path: explicit files, PORTCULLIS_PLUGIN_PATH, the install's folder, the build tree beside the executable.
+result app_open(app *a, const app_plugin_files *files);
+void app_close(app *a);
+int app_exit_code(result done);
+
+typedef struct app_size { uint32_t width_px, height_px; } app_size;
+int parse_size(const char *text, app_size *out);                                     // "1280x720"; 0 when it is none
+int parse_count(const char *text, uint32_t least, uint32_t most, uint32_t *out);     // 0 when it is none
+int parse_doors(const char *text, door_state *out);                                  // "open", "shut"
+const char *scene_label(const char *path, arena *texts);                             // "a/b/e1m1.map" -> "e1m1"; NULL: no memory
+
+#endif

@@ -1,0 +1,201 @@
+// portcullis bench: strategies over a path, as a table, JSON and pictures.
+// SPDX-License-Identifier: MIT
+#define _POSIX_C_SOURCE 200809L
+#include "../../bench/bench.h"
+#include "../core/file.h"
+#include "app.h"
+
+#include <argp.h>
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { STRATEGIES_MOST = 64, ZONES_MOST = 256 };
+enum { KEY_VIEWS = 256, KEY_CULLER, KEY_ZONE, KEY_SIZE, KEY_REPEAT, KEY_NO_TRUTH, KEY_IDS, KEY_DOORS, KEY_IMAGES, KEY_LATENCY, KEY_JSON, KEY_PLUGIN };
+
+typedef struct arguments {
+    const char *scene, *views, *images, *json;
+    const char *cullers[STRATEGIES_MOST], *zones[ZONES_MOST];
+    uint32_t culler_count, zone_count, repeat, latency;
+    app_size size;
+    door_state doors;
+    bench_truth truth;
+    bench_ids ids;
+    app_plugin_files plugins;
+} arguments;
+
+static const struct argp_option options[] = {
+    {"views", KEY_VIEWS, "FILE|auto:N|auto:walk:N", 0, "the camera path; needed", 0},
+    {"culler", KEY_CULLER, "CHAIN", 0, "a strategy, such as frustum or octree[leaf=64]+occlusion; may stand several times", 0},
+    {"zone", KEY_ZONE, "NAME=CHAIN", 0, "in every strategy that zone takes this chain", 0},
+    {"size", KEY_SIZE, "WxH", 0, "of the picture (default 1280x720)", 0},
+    {"repeat", KEY_REPEAT, "N", 0, "passes over the path (default 3)", 0},
+    {"no-truth", KEY_NO_TRUTH, NULL, 0, "time only: no pictures, no GL unless a culler tests", 0},
+    {"ids", KEY_IDS, NULL, 0, "writing the id of every drawn item counts as culling", 0},
+    {"doors", KEY_DOORS, "open|shut", 0, "how doors stand (default open)", 0},
+    {"images", KEY_IMAGES, "DIR", 0, "write a picture of each strategy, and of its worst view", 0},
+    {"query-latency", KEY_LATENCY, "L", 0, "an answer is readable L steps later (default 0)", 0},
+    {"json", KEY_JSON, "FILE|-", 0, "results in Google Benchmark's shape", 0},
+    {"plugin", KEY_PLUGIN, "FILE", 0, "look at this library first; may stand several times", 0},
+    {0},
+};
+
+static void parse_numbers(int key, const char *text, struct argp_state *state)
+{
+    arguments *a = state->input;
+    if (key == KEY_SIZE && !parse_size(text, &a->size)) argp_error(state, "--size takes WxH of 1 to 8192, not '%s'", text);
+    if (key == KEY_REPEAT && !parse_count(text, 1, 10000, &a->repeat)) argp_error(state, "--repeat takes 1 to 10000, not '%s'", text);
+    if (key == KEY_LATENCY && !parse_count(text, 0, 64, &a->latency)) argp_error(state, "--query-latency takes 0 to 64, not '%s'", text);
+    if (key == KEY_DOORS && !parse_doors(text, &a->doors)) argp_error(state, "--doors takes open or shut, not '%s'", text);
+}
+
+static void add_text(const char **list, uint32_t *count, uint32_t most, const char *text, struct argp_state *state)
+{
+    if (*count == most) argp_error(state, "too many of one option");
+    list[(*count)++] = text;
+}
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    arguments *a = state->input;
+    switch (key) {
+    case KEY_VIEWS: a->views = text; break;
+    case KEY_CULLER: add_text(a->cullers, &a->culler_count, STRATEGIES_MOST, text, state); break;
+    case KEY_ZONE: add_text(a->zones, &a->zone_count, ZONES_MOST, text, state); break;
+    case KEY_PLUGIN: add_text(a->plugins.files, &a->plugins.count, APP_PLUGINS_MOST, text, state); break;
+    case KEY_NO_TRUTH: a->truth = BENCH_NO_TRUTH; break;
+    case KEY_IDS: a->ids = BENCH_IDS; break;
+    case KEY_IMAGES: a->images = text; break;
+    case KEY_JSON: a->json = text; break;
+    case KEY_SIZE:
+    case KEY_REPEAT:
+    case KEY_LATENCY:
+    case KEY_DOORS: parse_numbers(key, text, state); break;
+    case ARGP_KEY_ARG:
+        if (a->scene) argp_error(state, "one SCENE, not also '%s'", text);
+        a->scene = text;
+        break;
+    case ARGP_KEY_END:
+        if (!a->scene) argp_error(state, "SCENE is missing");
+        if (!a->views) argp_error(state, "--views is missing; name a .views file, auto:N or auto:walk:N");
+        break;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+// The chain that the one zone takes when --zone names it, and the text that follows the strategy's name.
+typedef struct zone_override { const char *chain, *suffix; } zone_override;
+
+static result parse_zones(app *a, const arguments *q, zone_override *out)
+{
+    char suffix[4096] = "";
+    *out = (zone_override){NULL, ""};
+    for (uint32_t i = 0; i < q->zone_count; ++i) {
+        const char *equals = strchr(q->zones[i], '=');
+        const size_t length = equals ? (size_t)(equals - q->zones[i]) : 0;
+        if (!equals || length != strlen(a->scene->zone.name) || memcmp(q->zones[i], a->scene->zone.name, length) != 0)
+            return report_error(&a->report, NULL, 0, "--zone '%s': write NAME=CHAIN; the zones of this scene are: %s", q->zones[i], a->scene->zone.name);
+        out->chain = equals + 1;
+        if (strlen(suffix) + strlen(q->zones[i]) + 2 > sizeof suffix) return report_error(&a->report, NULL, 0, "--zone: too long");
+        strcat(strcat(suffix, ","), q->zones[i]);
+    }
+    out->suffix = arena_text(&a->texts, suffix, strlen(suffix));
+    return out->suffix ? RESULT_OK : report_no_memory(&a->report, NULL);
+}
+
+static result parse_strategy(app *a, const char *culler, const zone_override *zones, bench_strategy_request *out)
+{
+    static const char *const of_scene = "frustum"; // scenes say no chain of their own yet
+    const char *name = culler ? culler : "scene", *text = zones->chain ? zones->chain : culler ? culler : of_scene;
+    chain_spec *spec = arena_push(&a->texts, 1, sizeof *spec);
+    char full[8192];
+    snprintf(full, sizeof full, "%s%s", name, zones->suffix);
+    out->name = arena_text(&a->texts, full, strlen(full));
+    if (!spec || !out->name) return report_no_memory(&a->report, NULL);
+    out->spec = spec;
+    return chain_parse(text, &a->texts, &a->report, spec);
+}
+
+static result print_text(const app *a, const char *text, size_t size, FILE *to)
+{
+    fwrite(text, 1, size, to);
+    memory_free(a->memory, (void *)text, size + 1, 1);
+    return RESULT_OK;
+}
+
+// The table is for people where JSON goes to stdout.
+static result write_results(app *a, const arguments *q, const bench_request *bench, const bench_result *b, const bench_labels *labels)
+{
+    char *text;
+    size_t size;
+    const int json_to_stdout = q->json && strcmp(q->json, "-") == 0;
+    if (bench_table(b, labels, a->memory, &text, &size) != RESULT_OK) return report_no_memory(&a->report, NULL);
+    print_text(a, text, size, json_to_stdout ? stderr : stdout);
+    if (!q->json) return RESULT_OK;
+    if (bench_json(b, bench, labels, &text, &size) != RESULT_OK) return report_no_memory(&a->report, NULL);
+    if (json_to_stdout) {
+        print_text(a, text, size, stdout);
+        printf("\n");
+        return RESULT_OK;
+    }
+    const result done = file_write(q->json, text, size, &a->report);
+    memory_free(a->memory, text, size + 1, 1);
+    return done;
+}
+
+static uint32_t tell_failures(app *a, const bench_result *b)
+{
+    uint32_t failed = 0;
+    for (uint32_t i = 0; i < b->row_count; ++i) {
+        const bench_row *row = &b->rows[i];
+        if (row->picture_differs) report_error(&a->report, NULL, 0, "%s: drawing what it said gives another picture than the truth", row->name);
+        else if (bench_check_failed(row))
+            report_error(&a->report, NULL, 0, "%s promises to lose nothing, and missed %llu pixels and %llu items; worst is view %u", row->name,
+                         (unsigned long long)row->missed_pixels, (unsigned long long)row->missed_items, row->worst_view);
+        failed += bench_check_failed(row);
+    }
+    return failed;
+}
+
+static result run_bench(app *a, const arguments *q, const camera_path *path, uint32_t *failed)
+{
+    bench_strategy_request strategies[STRATEGIES_MOST];
+    zone_override zones;
+    const uint32_t count = q->culler_count ? q->culler_count : 1;
+    result done = parse_zones(a, q, &zones);
+    for (uint32_t i = 0; i < count && done == RESULT_OK; ++i) done = parse_strategy(a, q->culler_count ? q->cullers[i] : NULL, &zones, &strategies[i]);
+    if (done != RESULT_OK) return done;
+    if (q->images && mkdir(q->images, 0777) != 0 && errno != EEXIST) return report_error(&a->report, q->images, 0, "cannot make the folder: %s", strerror(errno));
+    const bench_request bench = {.scene = a->scene, .path = path, .strategies = strategies, .plugins = a->plugins, .services = &a->services,
+                                 .strategy_count = count, .width_px = q->size.width_px, .height_px = q->size.height_px, .repeat = q->repeat,
+                                 .query_latency = q->latency, .truth = q->truth, .ids = q->ids, .images = q->images};
+    const bench_labels labels = {scene_label(q->scene, &a->texts), path->name};
+    if (!labels.scene) return report_no_memory(&a->report, NULL);
+    bench_result results;
+    done = bench_run(&bench, &a->report, &results);
+    if (done != RESULT_OK) return done;
+    done = write_results(a, q, &bench, &results, &labels);
+    *failed = tell_failures(a, &results);
+    bench_result_free(&results);
+    return done;
+}
+
+int command_bench(int argc, char **argv)
+{
+    static const struct argp parser = {options, parse, "SCENE", "Measures strategies on a scene and camera path against the truth.", NULL, NULL, NULL};
+    arguments q = {.repeat = 3, .size = {1280, 720}, .doors = DOORS_OPEN, .truth = BENCH_TRUTH, .ids = BENCH_RUNS};
+    if (argp_parse(&parser, argc, argv, 0, NULL, &q) != 0) return EXIT_USAGE;
+    app a;
+    camera_path path = {0};
+    uint32_t failed = 0;
+    const import_options import = {.doors = q.doors};
+    result done = app_open(&a, &q.plugins);
+    if (done == RESULT_OK) done = import_scene(q.scene, &import, a.memory, &a.report, &a.scene);
+    if (done == RESULT_OK) done = camera_path_load(q.views, a.scene, (double)q.size.width_px / q.size.height_px, a.memory, &a.report, &path);
+    if (done == RESULT_OK) done = run_bench(&a, &q, &path, &failed);
+    camera_path_free(&path, a.memory);
+    app_close(&a);
+    return done == RESULT_OK && failed ? EXIT_CHECK_FAILED : app_exit_code(done);
+}

@@ -1,0 +1,80 @@
+// portcullis info: what a scene holds, as one flat object or a table.
+// SPDX-License-Identifier: MIT
+#include "app.h"
+
+#include <argp.h>
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct arguments {
+    const char *scene;
+    door_state doors;
+    int json;
+} arguments;
+
+static const struct argp_option options[] = {
+    {"json", 'j', NULL, 0, "one flat JSON object on stdout", 0},
+    {"doors", 'd', "open|shut", 0, "how doors stand (default open)", 0},
+    {0},
+};
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    arguments *a = state->input;
+    if (key == 'j') a->json = 1;
+    else if (key == 'd') {
+        if (!parse_doors(text, &a->doors)) argp_error(state, "--doors takes open or shut, not '%s'", text);
+    } else if (key == ARGP_KEY_ARG && !a->scene) a->scene = text;
+    else if (key == ARGP_KEY_ARG) argp_error(state, "one SCENE, not also '%s'", text);
+    else if (key == ARGP_KEY_END && !a->scene) argp_error(state, "SCENE is missing");
+    else return ARGP_ERR_UNKNOWN;
+    return 0;
+}
+
+static json_t *info_of(const scene *s)
+{
+    const double *o = s->zone.origin;
+    const cull_box b = s->zone.box;
+    json_t *bounds = json_pack("[f,f,f,f,f,f]", o[0] + b.min.x, o[1] + b.min.y, o[2] + b.min.z, o[0] + b.max.x, o[1] + b.max.y, o[2] + b.max.z);
+    char hash[24];
+    snprintf(hash, sizeof hash, "%016llx", (unsigned long long)s->hash);
+    return json_pack("{s:i, s:i, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:[f,f,f], s:f, s:I, s:I, s:s}", "zones", 1, "portals", 0, "items",
+                     (json_int_t)s->item_count, "objects", (json_int_t)s->object_count, "polygons", (json_int_t)s->polygon_count, "triangles",
+                     (json_int_t)(s->index_count / 3), "materials", (json_int_t)s->material_count, "movers", (json_int_t)s->mover_count, "bytes",
+                     (json_int_t)s->memory.bytes, "bounds", bounds, "origin", o[0], o[1], o[2], "step", s->step, "flat_triangles",
+                     (json_int_t)s->flat_triangles, "places", (json_int_t)s->place_count, "hash", hash);
+}
+
+static void print_text(const json_t *info)
+{
+    const char *key;
+    json_t *value;
+    json_object_foreach((json_t *)info, key, value)
+    {
+        char *text = json_dumps(value, JSON_ENCODE_ANY | JSON_REAL_PRECISION(10));
+        printf("%-15s %s\n", key, text ? text : "?");
+        free(text);
+    }
+}
+
+int command_info(int argc, char **argv)
+{
+    static const struct argp parser = {options, parse, "SCENE", "Tells what a scene file holds.", NULL, NULL, NULL};
+    arguments q = {.doors = DOORS_OPEN};
+    if (argp_parse(&parser, argc, argv, 0, NULL, &q) != 0) return EXIT_USAGE;
+    app a;
+    result done = app_open(&a, NULL);
+    const import_options import = {.doors = q.doors};
+    if (done == RESULT_OK) done = import_scene(q.scene, &import, a.memory, &a.report, &a.scene);
+    if (done == RESULT_OK) {
+        json_t *info = info_of(a.scene);
+        if (q.json) {
+            json_dumpf(info, stdout, JSON_INDENT(2));
+            printf("\n");
+        } else print_text(info);
+        json_decref(info);
+    }
+    app_close(&a);
+    return app_exit_code(done);
+}

@@ -1,0 +1,135 @@
+// portcullis render: one view, culled and drawn, to a PNG.
+// SPDX-License-Identifier: MIT
+#include "../../bench/images.h"
+#include "app.h"
+
+#include <argp.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { KEY_VIEWS = 256, KEY_VIEW, KEY_CULLER, KEY_MODE, KEY_DOORS, KEY_SIZE, KEY_PLUGIN };
+
+typedef struct arguments {
+    const char *scene, *views, *culler, *out;
+    uint32_t view, has_view;
+    picture_request picture;
+    app_size size;
+    door_state doors;
+    app_plugin_files plugins;
+} arguments;
+
+static const struct argp_option options[] = {
+    {"views", KEY_VIEWS, "FILE|auto:N|auto:walk:N", 0, "the camera path; needed", 0},
+    {"view", KEY_VIEW, "I", 0, "which of its views, from 0 (default 0)", 0},
+    {"culler", KEY_CULLER, "CHAIN", 0, "what culls (default none: all is drawn)", 0},
+    {"mode", KEY_MODE, "shaded|items|zones|depth|overdraw|error", 0, "default shaded; error: missed pixels in magenta", 0},
+    {"doors", KEY_DOORS, "open|shut", 0, "how doors stand (default open)", 0},
+    {"size", KEY_SIZE, "WxH", 0, "of the picture (default 1280x720)", 0},
+    {"plugin", KEY_PLUGIN, "FILE", 0, "look at this library first", 0},
+    {"output", 'o', "FILE.png", 0, "where to; needed", 0},
+    {0},
+};
+
+static int parse_mode(const char *text, picture_request *out)
+{
+    static const char *const names[] = {"shaded", "items", "zones", "depth", "overdraw"};
+    static const render_mode modes[] = {RENDER_SHADED, RENDER_ITEMS, RENDER_ZONES, RENDER_DEPTH, RENDER_OVERDRAW};
+    if (strcmp(text, "error") == 0) {
+        out->kind = PICTURE_ERROR;
+        return 1;
+    }
+    for (size_t i = 0; i < sizeof names / sizeof *names; ++i)
+        if (strcmp(text, names[i]) == 0) {
+            out->mode = modes[i];
+            return 1;
+        }
+    return 0;
+}
+
+static error_t parse(int key, char *text, struct argp_state *state)
+{
+    arguments *a = state->input;
+    switch (key) {
+    case KEY_VIEWS: a->views = text; break;
+    case KEY_CULLER: a->culler = text; break;
+    case 'o': a->out = text; break;
+    case KEY_PLUGIN:
+        if (a->plugins.count < APP_PLUGINS_MOST) a->plugins.files[a->plugins.count++] = text;
+        break;
+    case KEY_VIEW:
+        if (!parse_count(text, 0, UINT32_MAX - 1, &a->picture.view)) argp_error(state, "--view takes a number from 0, not '%s'", text);
+        break;
+    case KEY_MODE:
+        if (!parse_mode(text, &a->picture)) argp_error(state, "--mode takes shaded, items, zones, depth, overdraw or error, not '%s'", text);
+        break;
+    case KEY_DOORS:
+        if (!parse_doors(text, &a->doors)) argp_error(state, "--doors takes open or shut, not '%s'", text);
+        break;
+    case KEY_SIZE:
+        if (!parse_size(text, &a->size)) argp_error(state, "--size takes WxH of 1 to 8192, not '%s'", text);
+        break;
+    case ARGP_KEY_ARG:
+        if (a->scene) argp_error(state, "one SCENE, not also '%s'", text);
+        a->scene = text;
+        break;
+    case ARGP_KEY_END:
+        if (!a->scene || !a->views || !a->out) argp_error(state, "SCENE, --views and -o are needed");
+        break;
+    default: return ARGP_ERR_UNKNOWN;
+    }
+    return 0;
+}
+
+static result draw(app *a, const arguments *q, const bench_request *bench, const chain_spec *spec, renderer *g)
+{
+    strategy s = {0};
+    truth t = {0};
+    const size_t bytes = (size_t)q->size.width_px * q->size.height_px * 4;
+    uint64_t missed = 0;
+    uint8_t *rgba = memory_alloc(a->memory, bytes, 1);
+    result done = rgba ? renderer_upload(g, a->scene, &a->report) : report_no_memory(&a->report, NULL);
+    if (done == RESULT_OK) done = strategy_open(bench, spec, g, &a->report, &s);
+    const truth_request request = {a->scene, q->size.width_px, q->size.height_px, FACES_ALL};
+    if (done == RESULT_OK && q->picture.kind == PICTURE_ERROR) done = truth_open(&request, a->memory, &a->report, &t);
+    if (done == RESULT_OK) done = picture_of(&s, &t, &q->picture, &a->report, rgba, &missed);
+    if (done == RESULT_OK) done = png_write(q->out, rgba, q->size.width_px, q->size.height_px, &a->report);
+    if (done == RESULT_OK && q->picture.kind == PICTURE_ERROR) report_note(&a->report, "%llu missed pixels", (unsigned long long)missed);
+    truth_close(&t);
+    strategy_close(&s);
+    memory_free(a->memory, rgba, bytes, 1);
+    return done;
+}
+
+static result run_render(app *a, const arguments *q, const camera_path *path)
+{
+    if (q->picture.view >= path->count) return report_error(&a->report, NULL, 0, "--view %u: the path has %u views, counted from 0", q->picture.view, path->count);
+    chain_spec *spec = arena_push(&a->texts, 1, sizeof *spec);
+    if (!spec) return report_no_memory(&a->report, NULL);
+    result done = chain_parse(q->culler, &a->texts, &a->report, spec);
+    if (done != RESULT_OK) return done;
+    const bench_request bench = {.scene = a->scene, .path = path, .plugins = a->plugins, .services = &a->services, .repeat = 1,
+                                 .width_px = q->size.width_px, .height_px = q->size.height_px, .truth = BENCH_NO_TRUTH};
+    const renderer_options options_of_gl = {.target = RENDERER_HEADLESS, .width_px = q->size.width_px, .height_px = q->size.height_px};
+    renderer *g = NULL;
+    done = renderer_open(&options_of_gl, a->memory, &a->report, &g);
+    if (done == RESULT_OK) done = draw(a, q, &bench, spec, g);
+    renderer_close(g);
+    return done;
+}
+
+int command_render(int argc, char **argv)
+{
+    static const struct argp parser = {options, parse, "SCENE", "Draws one view of a scene to a PNG file.", NULL, NULL, NULL};
+    arguments q = {.culler = "none", .size = {1280, 720}, .doors = DOORS_OPEN, .picture = {.mode = RENDER_SHADED}};
+    if (argp_parse(&parser, argc, argv, 0, NULL, &q) != 0) return EXIT_USAGE;
+    app a;
+    camera_path path = {0};
+    const import_options import = {.doors = q.doors};
+    result done = app_open(&a, &q.plugins);
+    if (done == RESULT_OK) done = import_scene(q.scene, &import, a.memory, &a.report, &a.scene);
+    if (done == RESULT_OK) done = camera_path_load(q.views, a.scene, (double)q.size.width_px / q.size.height_px, a.memory, &a.report, &path);
+    if (done == RESULT_OK) done = run_render(&a, &q, &path);
+    camera_path_free(&path, a.memory);
+    app_close(&a);
+    return app_exit_code(done);
+}

@@ -1,0 +1,61 @@
+// portcullis: dispatches to its subcommands.
+// SPDX-License-Identifier: MIT
+#include "app.h"
+
+#include <argp.h>
+#include <stdio.h>
+#include <string.h>
+
+#ifndef PORTCULLIS_VERSION
+#define PORTCULLIS_VERSION "unknown"
+#endif
+
+const char *argp_program_version = "portcullis " PORTCULLIS_VERSION;
+
+typedef struct command {
+    const char *name, *title, *summary; // title: argv[0] of the command
+    app_command run;
+} command;
+
+static const command commands[] = {
+    {"plugins", "portcullis plugins", "list cullers found, and libraries refused with the reason", command_plugins},
+    {"info", "portcullis info", "what a scene holds", command_info},
+    {"bench", "portcullis bench", "measure cullers on a scene and camera path against the truth", command_bench},
+    {"render", "portcullis render", "draw one view to a PNG", command_render},
+    {"generate", "portcullis generate", "write a seeded scene: city, swarm, rooms, demo", command_generate},
+};
+enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
+
+static void usage(FILE *to)
+{
+    fprintf(to, "usage: portcullis COMMAND [OPTIONS]\n\n");
+    for (int i = 0; i < COMMAND_COUNT; ++i) fprintf(to, "  %-10s %s\n", commands[i].name, commands[i].summary);
+    fprintf(to, "\n`portcullis COMMAND --help` tells a command's options. Exit codes: 0 good, 1 a check failed, 2 bad usage or input, 3 no GL.\n");
+}
+
+int main(int argc, char **argv)
+{
+    argp_err_exit_status = EXIT_USAGE;
+    if (argc < 2) {
+        usage(stderr);
+        return EXIT_USAGE;
+    }
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "help") == 0) {
+        usage(stdout);
+        return EXIT_GOOD;
+    }
+    if (strcmp(argv[1], "--version") == 0) {
+        printf("%s\n", argp_program_version);
+        return EXIT_GOOD;
+    }
+    for (int i = 0; i < COMMAND_COUNT; ++i) {
+        if (strcmp(argv[1], commands[i].name) != 0) continue;
+        char title[64];
+        snprintf(title, sizeof title, "%s", commands[i].title);
+        argv[1] = title;
+        return commands[i].run(argc - 1, argv + 1);
+    }
+    fprintf(stderr, "portcullis: error: no command '%s'\n", argv[1]);
+    usage(stderr);
+    return EXIT_USAGE;
+}

@@ -1,0 +1,31 @@
+// The loop of `brute` in plain C: what the compiler makes of the baseline.
+// SPDX-License-Identifier: MIT
+#include "builtin_brute.h"
+
+static inline uint32_t test16(const brute_plane *planes, uint32_t plane_count, uint32_t i)
+{
+    uint32_t inside[16];
+    for (int b = 0; b < 16; b++) inside[b] = UINT32_C(1) << b;
+    for (uint32_t k = 0; k < plane_count; k++) {
+        const brute_plane *p = &planes[k];
+        const float *x = p->x + i, *y = p->y + i, *z = p->z + i;
+        for (int b = 0; b < 16; b++)
+            inside[b] = (x[b] * p->normal_x + y[b] * p->normal_y) + z[b] * p->normal_z >= p->limit ? inside[b] : 0;
+    }
+    uint32_t bits = 0;
+    for (int b = 0; b < 16; b++) bits |= inside[b];
+    return bits;
+}
+
+static inline uint32_t *put64(uint64_t bits, uint32_t base, uint32_t *out)
+{
+    for (; bits; bits &= bits - 1) *out++ = base + (uint32_t)__builtin_ctzll(bits);
+    return out;
+}
+
+#include "builtin_brute_body.h"
+
+uint32_t brute_plain(const brute_job *job, cull_run *runs)
+{
+    return brute_run(job, runs);
+}

@@ -1,0 +1,214 @@
+// Chains: creates, builds and checks the cullers of one zone, and lays the zone out in the select's order.
+// SPDX-License-Identifier: MIT
+#define _POSIX_C_SOURCE 200809L
+#include "chain.h"
+
+#include <string.h>
+#include <time.h>
+
+static const size_t SCRATCH_BYTES_MOST = (size_t)1 << 32; // a culler that wants more is wrong about something
+enum { LIST_MOST = 1 << 28 };                             // and so with every capacity it tells
+
+static double cpu_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+// ---- The zone as plugins see it ----
+
+static result zone_of_scene(chain *c)
+{
+    const scene *s = c->scene;
+    cull_item *items = arena_push(&c->memory, s->item_count, sizeof *items);
+    if (!items) return RESULT_NO_MEMORY;
+    for (uint32_t i = 0; i < s->item_count; ++i) {
+        const scene_item *from = &s->items[i];
+        items[i] = (cull_item){from->first_index, from->index_count, from->polygon_count, from->material, from->flags, 0};
+    }
+    c->zone = (cull_zone){.items = items, .boxes = s->boxes, .positions = s->positions, .indices = s->indices, .walls = s->walls,
+                          .wall_vertices = s->wall_vertices, .planes = s->planes, .box = s->zone.box, .radius = s->zone.radius,
+                          .item_count = s->item_count, .position_count = s->position_count, .index_count = s->index_count,
+                          .wall_vertex_count = s->wall_vertex_count, .plane_count = s->plane_count, .mover_capacity = s->mover_count};
+    return RESULT_OK;
+}
+
+static const float *floats_in_order(chain *c, const float *from)
+{
+    const uint32_t count = c->zone.item_count;
+    float *to = arena_push(&c->memory, (size_t)count + CULL_PADDING, sizeof *to);
+    if (!to) return NULL;
+    for (uint32_t i = 0; i < count; ++i) to[i] = from[c->order[i]];
+    memset(to + count, 0, CULL_PADDING * sizeof *to);
+    return to;
+}
+
+// Items, boxes and walls in the select's order, for the stages behind it.
+static result zone_in_order(chain *c)
+{
+    c->ordered_zone = c->zone;
+    if (!c->order || c->stage_count == 1) return RESULT_OK;
+    const uint32_t count = c->zone.item_count;
+    const cull_boxes *b = &c->zone.boxes;
+    const cull_boxes to = {floats_in_order(c, b->min_x), floats_in_order(c, b->min_y), floats_in_order(c, b->min_z),
+                           floats_in_order(c, b->max_x), floats_in_order(c, b->max_y), floats_in_order(c, b->max_z)};
+    cull_item *items = arena_push(&c->memory, count, sizeof *items);
+    cull_wall *walls = c->zone.walls ? arena_push(&c->memory, count, sizeof *walls) : NULL;
+    if (!to.min_x || !to.min_y || !to.min_z || !to.max_x || !to.max_y || !to.max_z || !items || (c->zone.walls && !walls)) return RESULT_NO_MEMORY;
+    for (uint32_t i = 0; i < count; ++i) {
+        items[i] = c->zone.items[c->order[i]];
+        if (walls) walls[i] = c->zone.walls[c->order[i]];
+    }
+    c->ordered_zone.items = items;
+    c->ordered_zone.boxes = to;
+    c->ordered_zone.walls = walls;
+    return RESULT_OK;
+}
+
+static result order_is_permutation(chain *c, const char *id, report *r)
+{
+    const uint32_t count = c->zone.item_count;
+    uint8_t *seen = memory_alloc_zeroed(c->memory.memory, count, 1);
+    if (!seen) return report_no_memory(r, NULL);
+    uint32_t good = 0;
+    for (uint32_t i = 0; i < count; ++i)
+        if (c->order[i] < count && !seen[c->order[i]]) good += seen[c->order[i]] = 1;
+    memory_free(c->memory.memory, seen, count, 1);
+    return good == count ? RESULT_OK : report_error(r, NULL, 0, "culler '%s' returned an order that is no permutation of the zone's items; mend the plugin", id);
+}
+
+// ---- One stage ----
+
+static result option_values(const cull_descriptor *d, const chain_stage_spec *spec, report *r, const char **values)
+{
+    for (uint32_t i = 0; i < d->option_count; ++i) values[i] = d->options[i].fallback;
+    for (uint32_t k = 0; k < spec->option_count; ++k) {
+        uint32_t i = 0;
+        while (i < d->option_count && strcmp(d->options[i].key, spec->options[k].key) != 0) ++i;
+        if (i == d->option_count) {
+            char keys[256] = "";
+            for (uint32_t o = 0; o < d->option_count && strlen(keys) + strlen(d->options[o].key) + 3 < sizeof keys; ++o) {
+                if (o) strcat(keys, ", ");
+                strcat(keys, d->options[o].key);
+            }
+            return report_error(r, NULL, 0, "culler '%s' has no option '%s'; it has: %s", d->id, spec->options[k].key, *keys ? keys : "none");
+        }
+        values[i] = spec->options[k].value;
+    }
+    return RESULT_OK;
+}
+
+static result tell_failure(cull_result code, const chain_stage *stage, const char *what, report *r)
+{
+    const char *id = stage->plugin->descriptor->id;
+    if (code == CULL_ERR_MEMORY) return report_no_memory(r, NULL);
+    if (code == CULL_ERR_OPTION) return report_error(r, NULL, 0, "culler '%s' refused an option; `portcullis plugins` lists them", id);
+    if (code == CULL_ERR_BLOB) return report_error(r, NULL, 0, "culler '%s' refused a baked index; compile the scene again", id);
+    return report_error(r, NULL, 0, "culler '%s' could not %s this zone (result %d); try another chain", id, what, (int)code);
+}
+
+static result built_is_sound(const chain_stage *stage, report *r)
+{
+    const cull_built *b = &stage->built;
+    const cull_promises may = stage->plugin->descriptor->may_promise;
+    const char *fault = NULL;
+    if (b->max_steps < 1 || b->max_steps > CULL_MAX_STEPS) fault = "max_steps is not 1 .. 1,000,000";
+    else if (b->max_runs > LIST_MOST || b->max_tests > LIST_MOST || b->max_captures > LIST_MOST || b->max_pictures > LIST_MOST || b->slot_count > LIST_MOST)
+        fault = "a capacity is over 2^28";
+    else if (b->scratch_size > SCRATCH_BYTES_MOST) fault = "it wants over 4 GiB of scratch";
+    else if (b->promises & ~may) fault = "it promises more than its descriptor's may_promise";
+    else if (b->max_captures && !b->slot_count) fault = "it captures without slots";
+    return fault ? report_error(r, NULL, 0, "culler '%s' told nonsense after build: %s; mend the plugin", stage->plugin->descriptor->id, fault) : RESULT_OK;
+}
+
+static result stage_role_of(const cull_plugin *p, uint32_t place, uint32_t *crossers, report *r, stage_role *out)
+{
+    const char *id = p->descriptor->id;
+    if (place == 0 && !p->select) return report_error(r, NULL, 0, "culler '%s' cannot stand first: it selects nothing; put one such as frustum before it", id);
+    *out = place == 0 ? ROLE_SELECT : p->filter ? ROLE_FILTER : ROLE_CROSS;
+    if (place > 0 && !p->filter && !p->cross) return report_error(r, NULL, 0, "culler '%s' can only stand first in a chain: it neither filters nor crosses", id);
+    if (*out == ROLE_CROSS && ++*crossers > 1) return report_error(r, NULL, 0, "culler '%s' is the second crosser of its chain; one at most", id);
+    return RESULT_OK;
+}
+
+static const cull_hierarchy *hierarchy_of_select(const chain *c)
+{
+    const chain_stage *select = &c->stages[0];
+    return select->plugin->get_extension(select->culler, CULL_EXT_HIERARCHY);
+}
+
+static result stage_build(chain *c, uint32_t place, const chain_request *q, report *r)
+{
+    chain_stage *stage = &c->stages[place];
+    const char *values[256];
+    result done = option_values(stage->plugin->descriptor, &q->spec->stages[place], r, values);
+    if (done != RESULT_OK) return done;
+    cull_result code = stage->plugin->create(&q->services->host, values, &stage->culler);
+    if (code != CULL_OK || !stage->culler) return tell_failure(code != CULL_OK ? code : CULL_ERR_ZONE, stage, "create an index for", r);
+    const cull_zone *zone = place == 0 ? &c->zone : &c->ordered_zone;
+    code = stage->plugin->build(stage->culler, zone, place == 0 ? NULL : hierarchy_of_select(c), &stage->built);
+    if (code != CULL_OK) return tell_failure(code, stage, "build", r);
+    done = built_is_sound(stage, r);
+    if (done != RESULT_OK || place > 0) return done;
+    c->order = stage->built.order;
+    if (c->order) done = order_is_permutation(c, stage->plugin->descriptor->id, r);
+    return done != RESULT_OK ? done : zone_in_order(c) == RESULT_OK ? RESULT_OK : report_no_memory(r, NULL);
+}
+
+static void chain_sum_up(chain *c)
+{
+    c->promises = ~0u;
+    for (uint32_t i = 0; i < c->stage_count; ++i) {
+        const cull_built *b = &c->stages[i].built;
+        c->promises &= b->promises & CULL_CONSERVATIVE ? b->promises | CULL_SAMPLED : b->promises; // the stronger holds the weaker
+        c->index_bytes += b->index_bytes;
+        c->uses_renderer |= b->max_tests || b->max_captures || b->max_pictures;
+    }
+}
+
+static result chain_fill(chain *c, const chain_request *q, report *r)
+{
+    uint32_t crossers = 0;
+    c->stage_count = q->spec->stage_count;
+    for (uint32_t i = 0; i < c->stage_count; ++i) {
+        result done = loader_find(q->plugins, q->spec->stages[i].id, r, &c->stages[i].plugin);
+        if (done == RESULT_OK) done = stage_role_of(c->stages[i].plugin, i, &crossers, r, &c->stages[i].role);
+        if (done != RESULT_OK) return done;
+    }
+    if (zone_of_scene(c) != RESULT_OK) return report_no_memory(r, NULL);
+    const double start = cpu_ms();
+    for (uint32_t i = 0; i < c->stage_count; ++i) {
+        const result done = stage_build(c, i, q, r);
+        if (done != RESULT_OK) return done;
+    }
+    c->build_ms = cpu_ms() - start;
+    chain_sum_up(c);
+    return RESULT_OK;
+}
+
+result chain_build(const chain_request *q, report *r, chain **out)
+{
+    const allocator *memory = q->services->memory;
+    chain *c = memory_alloc_zeroed(memory, 1, sizeof *c);
+    if (!c) return report_no_memory(r, NULL);
+    c->memory = arena_make(memory);
+    c->scene = q->scene;
+    const result done = chain_fill(c, q, r);
+    if (done != RESULT_OK) {
+        chain_close(c);
+        return done;
+    }
+    *out = c;
+    return RESULT_OK;
+}
+
+void chain_close(chain *c)
+{
+    if (!c) return;
+    for (uint32_t i = c->stage_count; i-- > 0;)
+        if (c->stages[i].culler) c->stages[i].plugin->destroy(c->stages[i].culler);
+    const allocator *memory = c->memory.memory;
+    arena_free(&c->memory);
+    memory_free(memory, c, 1, sizeof *c);
+}

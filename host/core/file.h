@@ -1,0 +1,13 @@
+// Whole files in and out. Writing goes through a temporary name, so no partial output is left behind.
+// SPDX-License-Identifier: MIT
+#ifndef PORTCULLIS_HOST_FILE_H
+#define PORTCULLIS_HOST_FILE_H
+
+#include "memory.h"
+#include "report.h"
+
+// *out_bytes has a closing zero behind *out_size bytes; free with memory_free(memory, bytes, size + 1, 1).
+result file_read(const char *path, const allocator *memory, report *r, char **out_bytes, size_t *out_size);
+result file_write(const char *path, const void *bytes, size_t size, report *r); // all of it under that name, or nothing
+
+#endif

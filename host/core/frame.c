@@ -1,0 +1,263 @@
+// Frames: one zone's chain run for one view, step by step, with everything that a culler writes checked before use.
+// SPDX-License-Identifier: MIT
+#define _POSIX_C_SOURCE 200809L
+#include "viewer.h"
+
+#include <string.h>
+#include <time.h>
+
+// One frame in the making.
+typedef struct frame {
+    viewer *v;
+    const frame_input *q;
+    frame_stats *stats;
+    cull_view view;
+    view_volume planes;
+    cull_volume volume;
+    cull_visit visit;
+    struct timespec since; // cullers' time runs from here
+    uint32_t mover_count, answered;
+} frame;
+
+static void time_start(frame *f)
+{
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &f->since);
+}
+
+static void time_stop(frame *f)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    const double ns = (double)(now.tv_sec - f->since.tv_sec) * 1e9 + (double)(now.tv_nsec - f->since.tv_nsec) - f->v->clock_overhead_ns;
+    if (ns > 0) f->stats->cull_ns += ns;
+}
+
+// ---- Movers: the host's ----
+
+static int box_touches(const cull_volume *volume, const cull_box *b)
+{
+    for (uint32_t i = 0; i < volume->plane_count; ++i) {
+        const cull_plane *p = &volume->planes[i];
+        const float x = p->normal.x >= 0 ? b->max.x : b->min.x, y = p->normal.y >= 0 ? b->max.y : b->min.y, z = p->normal.z >= 0 ? b->max.z : b->min.z;
+        if (p->normal.x * x + p->normal.y * y + p->normal.z * z + p->offset < 0) return 0;
+    }
+    return 1;
+}
+
+static void find_movers(frame *f)
+{
+    const scene *s = f->v->chain->scene;
+    cull_mover *movers = f->v->movers.items;
+    for (uint32_t i = s->item_count; i < s->item_count + s->mover_count; ++i) {
+        const cull_box box = {{s->boxes.min_x[i], s->boxes.min_y[i], s->boxes.min_z[i]}, {s->boxes.max_x[i], s->boxes.max_y[i], s->boxes.max_z[i]}};
+        if (box_touches(&f->volume, &box)) movers[f->mover_count++] = (cull_mover){box, i, 0};
+    }
+    f->stats->movers_tested = s->mover_count;
+}
+
+// Movers that no culler decides about, as runs.
+static uint32_t draw_movers(frame *f)
+{
+    const cull_mover *movers = f->v->movers.items;
+    cull_run *runs = f->v->mover_runs.items;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < f->mover_count; ++i) {
+        if (count && runs[count - 1].first + runs[count - 1].count == movers[i].id) runs[count - 1].count++;
+        else runs[count++] = (cull_run){movers[i].id, 1};
+    }
+    return count;
+}
+
+// ---- Carrying out batches ----
+
+static void collect_answers(frame *f, collect_how how)
+{
+    const frame_driver *d = &f->q->driver;
+    uint32_t stalled = 0;
+    f->visit.answer_count = 0;
+    if (!d->collect || !f->v->answer_capacity) return;
+    const uint32_t got = d->collect(d->user, how, f->q->frame.frame, f->v->answers.items, f->v->answer_capacity, &stalled);
+    f->visit.answer_count = got < f->v->answer_capacity ? got : f->v->answer_capacity;
+    f->visit.answers = f->v->answers.items;
+    f->stats->stalls += stalled != 0;
+}
+
+static void carry_out(frame *f, const cull_batch *b, uint32_t earlier_runs, uint32_t earlier_pictures)
+{
+    const frame_driver *d = &f->q->driver;
+    time_stop(f);
+    if (d->draw && b->run_count > earlier_runs) d->draw(d->user, b->runs + earlier_runs, b->run_count - earlier_runs);
+    if (d->capture && b->capture_count) {
+        d->capture(d->user, b->captures, b->capture_count);
+        for (uint32_t i = 0; i < b->capture_count; ++i) f->v->slots[b->captures[i].slot] = 1;
+    }
+    if (d->show && b->picture_count > earlier_pictures) d->show(d->user, b->pictures + earlier_pictures, b->picture_count - earlier_pictures);
+    if (d->test && b->test_count) d->test(d->user, b->tests, b->test_count, f->q->frame.frame);
+    f->stats->captures += b->capture_count;
+    f->stats->pictures += b->picture_count - earlier_pictures;
+    f->stats->queries += b->test_count;
+    time_start(f);
+}
+
+static void tell_fault(frame *f, uint32_t stage, const char *what)
+{
+    f->stats->faults++;
+    if (f->v->told_fault) return;
+    f->v->told_fault = 1;
+    report_warning(f->v->log, NULL, 0, "culler '%s' misbehaves: %s (frame %u); its zone is drawn whole where it does",
+                   f->v->chain->stages[stage].plugin->descriptor->id, what, f->q->frame.frame);
+}
+
+// ---- Stages ----
+
+static cull_progress call(frame *f, uint32_t stage, cull_batch *b)
+{
+    const chain_stage *s = &f->v->chain->stages[stage];
+    f->stats->steps++;
+    return s->role == ROLE_SELECT ? s->plugin->select(f->v->stages[stage].query, &f->visit, b)
+                                  : s->plugin->filter(f->v->stages[stage].query, &f->visit, b);
+}
+
+static void take_counts(frame *f, const cull_batch *b)
+{
+    f->stats->nodes_visited += b->nodes_visited;
+    f->stats->limits_hit += b->limits_hit;
+}
+
+// A stage before the last: one call, its runs become the next one's candidates. 0 on nonsense.
+static int run_early_stage(frame *f, uint32_t stage)
+{
+    viewer *v = f->v;
+    cull_batch b = {.runs = v->stages[stage].runs.items, .captures = v->select_captures.items, .pictures = v->select_pictures.items};
+    const cull_progress progress = call(f, stage, &b);
+    const char *fault = progress != CULL_DONE ? "it steps, but is not the last select or filter of its chain" : batch_fault(v, stage, &b, 0, 0);
+    if (!fault && b.test_count) fault = "it asks for tests, but is not the last select or filter of its chain";
+    if (!fault && stage > 0 && (b.capture_count || b.picture_count)) fault = "it gives pictures, but is neither first nor last of its chain";
+    if (fault) {
+        tell_fault(f, stage, fault);
+        return 0;
+    }
+    take_counts(f, &b);
+    f->visit.candidates = b.runs;
+    f->visit.candidate_count = b.run_count;
+    if (stage > 0) return 1;
+    f->visit.captures = b.captures;
+    f->visit.pictures = b.pictures;
+    f->visit.capture_count = b.capture_count;
+    f->visit.picture_count = b.picture_count;
+    return 1;
+}
+
+// A select's captures and pictures that the filter kept are carried out once, with the filter's last step.
+static void carry_out_kept(frame *f)
+{
+    viewer *v = f->v;
+    cull_capture *captures = v->select_captures.items;
+    cull_picture *pictures = v->select_pictures.items;
+    const uint8_t *keep_capture = v->keep_captures.items, *keep_picture = v->keep_pictures.items;
+    cull_batch kept = {.captures = captures, .pictures = pictures};
+    for (uint32_t i = 0; i < f->visit.capture_count; ++i)
+        if (keep_capture[i]) captures[kept.capture_count++] = captures[i];
+    for (uint32_t i = 0; i < f->visit.picture_count; ++i)
+        if (keep_picture[i]) pictures[kept.picture_count++] = pictures[i];
+    if (kept.capture_count || kept.picture_count) carry_out(f, &kept, 0, 0);
+}
+
+// The stage that may step. Returns its runs, or UINT32_MAX on nonsense.
+static uint32_t run_last_stage(frame *f)
+{
+    viewer *v = f->v;
+    const uint32_t stage = v->last;
+    const cull_built *built = &v->chain->stages[stage].built;
+    cull_batch b = {.runs = v->stages[stage].runs.items, .pictures = v->pictures.items, .tests = v->tests.items, .captures = v->captures.items,
+                    .keep_captures = v->keep_captures.items, .keep_pictures = v->keep_pictures.items};
+    if (f->visit.capture_count) memset(b.keep_captures, 1, f->visit.capture_count);
+    if (f->visit.picture_count) memset(b.keep_pictures, 1, f->visit.picture_count);
+    collect_answers(f, COLLECT_WHAT_IS_READY);
+    for (uint32_t step = 0;; ++step) {
+        const uint32_t earlier_runs = b.run_count, earlier_pictures = b.picture_count;
+        b.test_count = b.capture_count = 0;
+        f->visit.step = step;
+        const cull_progress progress = call(f, stage, &b);
+        const char *fault = batch_fault(v, stage, &b, earlier_runs, earlier_pictures);
+        if (!fault && progress != CULL_DONE && progress != CULL_MORE && progress != CULL_WAIT) fault = "it returned neither DONE, MORE nor WAIT";
+        if (!fault && progress != CULL_DONE && step + 1 >= built->max_steps) fault = "it wants more steps than it told";
+        if (fault) {
+            tell_fault(f, stage, fault);
+            return UINT32_MAX;
+        }
+        if (b.run_count > earlier_runs || b.test_count || b.capture_count || b.picture_count > earlier_pictures)
+            if (f->q->driver.draw || b.test_count || b.capture_count || b.picture_count) carry_out(f, &b, earlier_runs, earlier_pictures);
+        if (progress == CULL_DONE) break;
+        collect_answers(f, progress == CULL_WAIT ? COLLECT_EVERYTHING : COLLECT_WHAT_IS_READY);
+    }
+    take_counts(f, &b);
+    if (stage > 0) carry_out_kept(f);
+    return b.run_count;
+}
+
+static void draw_whole(frame *f, visible_set *out)
+{
+    const scene *s = f->v->chain->scene;
+    cull_run *movers = f->v->mover_runs.items;
+    *out = (visible_set){.runs = &f->v->whole, .run_count = f->v->whole.count ? 1 : 0, .mover_runs = movers};
+    if (s->mover_count) {
+        movers[0] = (cull_run){s->item_count, s->mover_count};
+        out->mover_run_count = 1;
+    }
+}
+
+// The last stage's runs, where it takes movers split into items and movers by their ids.
+static void finish_set(frame *f, uint32_t run_count, visible_set *out)
+{
+    viewer *v = f->v;
+    const uint32_t items = v->chain->zone.item_count;
+    cull_run *runs = v->stages[v->last].runs.items;
+    *out = (visible_set){.runs = runs, .run_count = run_count, .mover_runs = v->mover_runs.items};
+    if (!v->chain->stages[v->last].built.takes_movers) {
+        out->mover_run_count = draw_movers(f);
+        return;
+    }
+    cull_run *mover_runs = v->mover_runs.items;
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < run_count; ++i) {
+        if (runs[i].first < items) runs[kept++] = runs[i];
+        else mover_runs[out->mover_run_count++] = runs[i];
+    }
+    out->run_count = kept;
+}
+
+static void begin(frame *f)
+{
+    const chain *c = f->v->chain;
+    view_derive(f->q->camera, &f->q->frame, c->scene->zone.origin, &c->scene->zone.box, &f->view, &f->planes);
+    f->volume = (cull_volume){f->planes.planes, f->planes.plane_count, 0};
+    f->visit = (cull_visit){.view = &f->view, .volumes = &f->volume, .volume_count = 1, .slots = f->v->slots, .scratch = f->v->scratch};
+    if (c->zone.mover_capacity) find_movers(f);
+    if (c->stages[f->v->last].built.takes_movers) {
+        f->visit.movers = f->v->movers.items;
+        f->visit.mover_count = f->mover_count;
+    }
+}
+
+void frame_run(viewer *v, const frame_input *q, visible_set *out_set, frame_stats *out_stats)
+{
+    frame f = {.v = v, .q = q, .stats = out_stats};
+    visible_set set;
+    *out_stats = (frame_stats){0};
+    time_start(&f);
+    begin(&f);
+    int sound = 1;
+    const uint32_t first = v->first > 0 && v->chain->stages[0].built.max_pictures ? 0 : v->first;
+    for (uint32_t i = first; i < v->last && sound; ++i)
+        if (v->chain->stages[i].role != ROLE_CROSS) sound = run_early_stage(&f, i);
+    const uint32_t run_count = sound ? run_last_stage(&f) : UINT32_MAX;
+    if (run_count == UINT32_MAX) draw_whole(&f, &set);
+    else finish_set(&f, run_count, &set);
+    time_stop(&f);
+    const frame_driver *d = &q->driver;
+    if (d->draw && run_count == UINT32_MAX) d->draw(d->user, set.runs, set.run_count);
+    if (d->draw && set.mover_run_count && (run_count == UINT32_MAX || !v->chain->stages[v->last].built.takes_movers)) d->draw(d->user, set.mover_runs, set.mover_run_count);
+    for (uint32_t i = 0; i < set.mover_run_count; ++i) out_stats->movers_drawn += set.mover_runs[i].count;
+    if (out_set) *out_set = set;
+}

@@ -1,0 +1,50 @@
+// Host services: see host.h.
+// SPDX-License-Identifier: MIT
+#include "host.h"
+
+static const host_services *services_of(const cull_host *host)
+{
+    return host->user;
+}
+
+static void *host_alloc(const cull_host *host, size_t size, size_t align)
+{
+    const allocator *memory = services_of(host)->memory;
+    return memory->alloc(memory->user, size, align);
+}
+
+static void host_free(const cull_host *host, void *block, size_t size)
+{
+    const allocator *memory = services_of(host)->memory;
+    if (block) memory->free(memory->user, block, size);
+}
+
+static void host_log(const cull_host *host, cull_log_level level, const char *message)
+{
+    report *log = services_of(host)->log;
+    if (level >= CULL_LOG_ERROR) report_error(log, NULL, 0, "%s", message);
+    else if (level == CULL_LOG_WARN) report_warning(log, NULL, 0, "%s", message);
+    else report_note(log, "%s", message);
+}
+
+// One thread for now: the contract allows any order, so a pool can take its place without a plugin noticing.
+static void host_parallel_for(const cull_host *host, void (*task)(void *context, uint32_t i), void *context, uint32_t count)
+{
+    (void)host;
+    for (uint32_t i = 0; i < count; ++i) task(context, i);
+}
+
+static const void *host_extension(const cull_host *host, const cull_zone *zone, const char *id)
+{
+    (void)host;
+    (void)zone;
+    (void)id;
+    return NULL;
+}
+
+void host_services_fill(host_services *s, const allocator *memory, report *log)
+{
+    *s = (host_services){.host = {CULL_ABI, s, host_alloc, host_free, host_log, host_parallel_for, host_extension},
+                         .memory = memory,
+                         .log = log};
+}

@@ -1,0 +1,289 @@
+// The plugin loader: see loader.h.
+// SPDX-License-Identifier: MIT
+#define _GNU_SOURCE
+#include "loader.h"
+#include "builtin.h"
+
+#include <dirent.h>
+#include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum { PLUGINS_A_LIBRARY_MOST = 64, OPTIONS_MOST = 256, ID_BYTES_MOST = 63, PATH_BYTES = 4096, LIST_BYTES = 512 };
+
+typedef struct library {
+    void *handle;
+    const char *path;
+} library;
+
+struct loader {
+    const allocator *memory;
+    arena texts;
+    buffer files, folders; // const char *
+    buffer plugins;        // loaded_plugin
+    buffer refused;        // refused_plugin
+    buffer libraries;      // library
+};
+
+static result add_texts(loader *l, buffer *to, const char *const *texts, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; ++i) {
+        const char *copy = arena_text(&l->texts, texts[i], strlen(texts[i]));
+        if (!copy || !buffer_append(to, &copy, 1)) return RESULT_NO_MEMORY;
+    }
+    return RESULT_OK;
+}
+
+result loader_open(const loader_options *o, const allocator *memory, report *r, loader **out)
+{
+    loader *l = memory_alloc_zeroed(memory, 1, sizeof *l);
+    if (!l) return report_no_memory(r, NULL);
+    l->memory = memory;
+    l->texts = arena_make(memory);
+    l->files = buffer_make(memory, sizeof(const char *));
+    l->folders = buffer_make(memory, sizeof(const char *));
+    l->plugins = buffer_make(memory, sizeof(loaded_plugin));
+    l->refused = buffer_make(memory, sizeof(refused_plugin));
+    l->libraries = buffer_make(memory, sizeof(library));
+    uint32_t count;
+    const cull_plugin *const *builtin = builtin_plugins(&count);
+    int failed = add_texts(l, &l->files, o->files, o->file_count) || add_texts(l, &l->folders, o->folders, o->folder_count);
+    for (uint32_t i = 0; i < count; ++i) failed = failed || !buffer_append(&l->plugins, &(loaded_plugin){builtin[i], NULL}, 1);
+    if (failed) {
+        loader_close(l);
+        return report_no_memory(r, NULL);
+    }
+    *out = l;
+    return RESULT_OK;
+}
+
+static void library_close(void *handle)
+{
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    (void)handle; // a closed library has no symbols in a report
+#else
+    dlclose(handle);
+#endif
+}
+
+void loader_close(loader *l)
+{
+    if (!l) return;
+    const library *libraries = l->libraries.items;
+    for (size_t i = 0; i < l->libraries.count; ++i) library_close(libraries[i].handle);
+    buffer *const all[] = {&l->files, &l->folders, &l->plugins, &l->refused, &l->libraries};
+    for (size_t i = 0; i < sizeof all / sizeof *all; ++i) buffer_free(all[i]);
+    arena_free(&l->texts);
+    memory_free(l->memory, l, 1, sizeof *l);
+}
+
+static const cull_plugin *plugin_known(const loader *l, const char *id)
+{
+    const loaded_plugin *plugins = l->plugins.items;
+    for (size_t i = 0; i < l->plugins.count; ++i)
+        if (strcmp(plugins[i].plugin->descriptor->id, id) == 0) return plugins[i].plugin;
+    return NULL;
+}
+
+static int id_is_legal(const char *id)
+{
+    const size_t length = id ? strnlen(id, ID_BYTES_MOST + 1) : 0;
+    return length > 0 && length <= ID_BYTES_MOST && strspn(id, "abcdefghijklmnopqrstuvwxyz0123456789-") == length;
+}
+
+// NULL when the descriptor is sound, else what is wrong with it.
+static const char *descriptor_fault(const cull_descriptor *d)
+{
+    if (!d) return "a plugin has no descriptor";
+    if (!id_is_legal(d->id)) return "an id is empty, too long, or not of a-z, 0-9 and -";
+    if (!d->version || !d->summary) return "its descriptor has no version or summary";
+    if (d->option_count > OPTIONS_MOST || (d->option_count && !d->options)) return "its option table is missing or too long";
+    for (uint32_t i = 0; i < d->option_count; ++i) {
+        if (!d->options[i].key || !d->options[i].fallback || !d->options[i].help) return "an option has no key, fallback or help";
+        for (uint32_t k = 0; k < i; ++k)
+            if (strcmp(d->options[i].key, d->options[k].key) == 0) return "an option stands twice in its table";
+    }
+    return NULL;
+}
+
+static const char *plugin_fault(const loader *l, const cull_plugin *p)
+{
+    if (!p) return "its table holds a NULL plugin";
+    const char *fault = descriptor_fault(p->descriptor);
+    if (fault) return fault;
+    if (!p->create || !p->destroy || !p->build || !p->open || !p->close || !p->get_extension)
+        return "one of create, destroy, build, open, close, get_extension is NULL";
+    if (!p->select && !p->filter && !p->cross) return "it has no verb: select, filter and cross are all NULL";
+    if (plugin_known(l, p->descriptor->id)) return "its id is taken by a culler found before it";
+    return NULL;
+}
+
+static const char *entry_fault(const loader *l, const cull_entry_v0 *entry, char *text, size_t size)
+{
+    if (!entry) return "it has no symbol " CULL_ENTRY_SYMBOL "; declare it with CULL_ENTRY";
+    if (entry->abi != CULL_ABI) { // the one field that every ABI has
+        snprintf(text, size, "it is of ABI number %u, this host of %u; build it against this host's culler.h", entry->abi, CULL_ABI);
+        return text;
+    }
+    if (entry->plugin_count == 0 || entry->plugin_count > PLUGINS_A_LIBRARY_MOST || !entry->plugins) return "it lists no plugin, or over 64";
+    for (uint32_t i = 0; i < entry->plugin_count; ++i) {
+        const char *fault = plugin_fault(l, entry->plugins[i]);
+        if (fault) return fault;
+    }
+    return NULL;
+}
+
+static result refuse(loader *l, const char *path, const char *reason)
+{
+    refused_plugin refused = {arena_text(&l->texts, path, strlen(path)), arena_text(&l->texts, reason, strlen(reason))};
+    if (!refused.path || !refused.reason || !buffer_append(&l->refused, &refused, 1)) return RESULT_NO_MEMORY;
+    return RESULT_OK;
+}
+
+static int library_seen(const loader *l, const char *path)
+{
+    const library *libraries = l->libraries.items;
+    for (size_t i = 0; i < l->libraries.count; ++i)
+        if (strcmp(libraries[i].path, path) == 0) return 1;
+    const refused_plugin *refused = l->refused.items;
+    for (size_t i = 0; i < l->refused.count; ++i)
+        if (strcmp(refused[i].path, path) == 0) return 1;
+    return 0;
+}
+
+static result library_keep(loader *l, void *handle, const char *path, const cull_entry_v0 *entry)
+{
+    const library kept = {handle, arena_text(&l->texts, path, strlen(path))};
+    if (!kept.path || !buffer_append(&l->libraries, &kept, 1)) {
+        library_close(handle);
+        return RESULT_NO_MEMORY;
+    }
+    for (uint32_t i = 0; i < entry->plugin_count; ++i)
+        if (!buffer_append(&l->plugins, &(loaded_plugin){entry->plugins[i], kept.path}, 1)) return RESULT_NO_MEMORY;
+    return RESULT_OK;
+}
+
+// Opens one file unless it was looked at before. Bad ones are refused, not failed.
+static result library_open(loader *l, const char *path)
+{
+    if (library_seen(l, path)) return RESULT_OK;
+    dlerror();
+    void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    if (!handle) {
+        const char *reason = dlerror();
+        return refuse(l, path, reason ? reason : "the system cannot load it");
+    }
+    char text[256];
+    const cull_entry_v0 *entry = dlsym(handle, CULL_ENTRY_SYMBOL);
+    const char *fault = entry_fault(l, entry, text, sizeof text);
+    if (!fault) return library_keep(l, handle, path, entry);
+    const result refused = refuse(l, path, fault);
+    library_close(handle);
+    return refused;
+}
+
+static int by_name(const struct dirent **a, const struct dirent **b)
+{
+    return strcmp((*a)->d_name, (*b)->d_name);
+}
+
+static int is_library(const struct dirent *e)
+{
+    const size_t length = strlen(e->d_name), suffix = strlen(LOADER_SUFFIX);
+    return length > suffix && strcmp(e->d_name + length - suffix, LOADER_SUFFIX) == 0;
+}
+
+static result folder_scan(loader *l, const char *folder)
+{
+    struct dirent **entries = NULL;
+    const int count = scandir(folder, &entries, is_library, by_name);
+    result done = RESULT_OK;
+    for (int i = 0; i < count; ++i) {
+        char path[PATH_BYTES];
+        const int length = snprintf(path, sizeof path, "%s/%s", folder, entries[i]->d_name);
+        if (done == RESULT_OK && length > 0 && (size_t)length < sizeof path) done = library_open(l, path);
+        free(entries[i]);
+    }
+    free(entries);
+    return done;
+}
+
+static result files_open(loader *l)
+{
+    const char *const *files = l->files.items;
+    for (size_t i = 0; i < l->files.count; ++i)
+        if (library_open(l, files[i]) != RESULT_OK) return RESULT_NO_MEMORY;
+    return RESULT_OK;
+}
+
+result loader_scan(loader *l, report *r)
+{
+    const char *const *folders = l->folders.items;
+    result done = files_open(l);
+    for (size_t i = 0; i < l->folders.count && done == RESULT_OK; ++i) done = folder_scan(l, folders[i]);
+    return done == RESULT_OK ? RESULT_OK : report_no_memory(r, NULL);
+}
+
+static result named_open(loader *l, const char *id)
+{
+    const char *const *folders = l->folders.items;
+    for (size_t i = 0; i < l->folders.count && !plugin_known(l, id); ++i) {
+        char path[PATH_BYTES];
+        struct stat status;
+        const int length = snprintf(path, sizeof path, "%s/%s" LOADER_SUFFIX, folders[i], id);
+        if (length < 0 || (size_t)length >= sizeof path || stat(path, &status) != 0) continue;
+        if (library_open(l, path) != RESULT_OK) return RESULT_NO_MEMORY;
+    }
+    return RESULT_OK;
+}
+
+static result tell_missing(const loader *l, const char *id, report *r)
+{
+    char list[LIST_BYTES] = "";
+    size_t used = 0;
+    const loaded_plugin *plugins = l->plugins.items;
+    for (size_t i = 0; i < l->plugins.count; ++i) {
+        const int put = snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", plugins[i].plugin->descriptor->id);
+        if (put < 0 || (size_t)put >= sizeof list - used) break;
+        used += (size_t)put;
+    }
+    const refused_plugin *refused = l->refused.items;
+    for (size_t i = 0; i < l->refused.count; ++i) {
+        const char *name = strrchr(refused[i].path, '/');
+        name = name ? name + 1 : refused[i].path;
+        if (strncmp(name, id, strlen(id)) == 0 && strcmp(name + strlen(id), LOADER_SUFFIX) == 0)
+            return report_error(r, refused[i].path, 0, "refused: %s. Cullers found: %s", refused[i].reason, list);
+    }
+    return report_error(r, NULL, 0, "no culler '%s'; found: %s. Name one of them, or set PORTCULLIS_PLUGIN_PATH", id, list);
+}
+
+result loader_find(loader *l, const char *id, report *r, const cull_plugin **out)
+{
+    if (!id_is_legal(id)) return report_error(r, NULL, 0, "'%s' is no culler's name; names are of a-z, 0-9 and -", id);
+    result done = RESULT_OK;
+    if (!plugin_known(l, id)) done = files_open(l);
+    if (done == RESULT_OK && !plugin_known(l, id)) done = named_open(l, id);
+    if (done == RESULT_OK && !plugin_known(l, id)) return loader_scan(l, r) == RESULT_OK && (*out = plugin_known(l, id)) ? RESULT_OK : tell_missing(l, id, r);
+    if (done != RESULT_OK) return report_no_memory(r, NULL);
+    *out = plugin_known(l, id);
+    return RESULT_OK;
+}
+
+const loaded_plugin *loader_plugins(const loader *l, uint32_t *count)
+{
+    *count = (uint32_t)l->plugins.count;
+    return l->plugins.items;
+}
+
+const refused_plugin *loader_refusals(const loader *l, uint32_t *count)
+{
+    *count = (uint32_t)l->refused.count;
+    return l->refused.items;
+}
+
+uint32_t loader_libraries_open(const loader *l)
+{
+    return (uint32_t)l->libraries.count;
+}

@@ -1,0 +1,250 @@
+// Scene builder: collects what an importer finds, in doubles, and checks every index on the way in.
+// SPDX-License-Identifier: MIT
+#include "scene_builder.h"
+
+#include <math.h>
+#include <string.h>
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+enum { MATERIALS_MOST = 65535, MATERIAL_SLOTS_FIRST = 64 };
+
+static void stream_open(builder_stream *s, const allocator *memory)
+{
+    s->items = buffer_make(memory, sizeof(scene_item));
+    s->indices = buffer_make(memory, sizeof(uint32_t));
+    s->polygon_triangles = buffer_make(memory, sizeof(uint32_t));
+}
+
+static void stream_close(builder_stream *s)
+{
+    buffer_free(&s->items);
+    buffer_free(&s->indices);
+    buffer_free(&s->polygon_triangles);
+}
+
+result scene_builder_open(const allocator *memory, scene_builder **out)
+{
+    scene_builder *b = memory_alloc_zeroed(memory, 1, sizeof *b);
+    if (!b) return RESULT_NO_MEMORY;
+    b->memory = memory;
+    b->names = arena_make(memory);
+    b->positions = buffer_make(memory, 3 * sizeof(double));
+    b->normals = buffer_make(memory, sizeof(uint32_t));
+    b->texcoords = buffer_make(memory, 2 * sizeof(float));
+    b->vertex_materials = buffer_make(memory, sizeof(uint16_t));
+    stream_open(&b->statics, memory);
+    stream_open(&b->movers, memory);
+    b->walls = buffer_make(memory, sizeof(builder_wall));
+    b->wall_vertices = buffer_make(memory, sizeof(uint32_t));
+    b->materials = buffer_make(memory, sizeof(scene_material));
+    b->material_slots = buffer_make(memory, sizeof(uint32_t));
+    b->objects = buffer_make(memory, sizeof(scene_object));
+    b->mover_list = buffer_make(memory, sizeof(scene_mover));
+    b->places = buffer_make(memory, sizeof(scene_place));
+    b->solids = buffer_make(memory, sizeof(scene_solid));
+    b->solid_planes = buffer_make(memory, sizeof(scene_solid_plane));
+    *out = b;
+    return RESULT_OK;
+}
+
+void scene_builder_close(scene_builder *b)
+{
+    if (!b) return;
+    stream_close(&b->statics);
+    stream_close(&b->movers);
+    buffer *const all[] = {&b->positions,  &b->normals,        &b->texcoords,  &b->vertex_materials, &b->walls,  &b->wall_vertices, &b->materials,
+                           &b->material_slots, &b->objects, &b->mover_list, &b->places, &b->solids, &b->solid_planes};
+    for (size_t i = 0; i < sizeof all / sizeof *all; ++i) buffer_free(all[i]);
+    arena_free(&b->names);
+    memory_free(b->memory, b, 1, sizeof *b);
+}
+
+void scene_builder_map(scene_builder *b)
+{
+    b->is_map = 1;
+}
+
+// A colour from the name alone: hue by hash, moderate saturation, light enough to be lit.
+static uint32_t colour_of_name(const char *name, size_t length)
+{
+    const uint64_t hash = XXH3_64bits(name, length);
+    const double hue = (double)(hash & 0xffff) / 65536 * 6, saturation = 0.15 + 0.35 * (double)(hash >> 16 & 0xff) / 255;
+    const double value = 0.6 + 0.35 * (double)(hash >> 24 & 0xff) / 255;
+    uint32_t colour = 0xff000000u;
+    for (int channel = 0; channel < 3; ++channel) {
+        const double k = fmod(5 - 2 * channel + hue, 6); // HSV to RGB, the closed form
+        const double ramp = fmax(0, fmin(1, fmin(k, 4 - k)));
+        colour |= (uint32_t)(255 * (value - value * saturation * ramp)) << (8 * channel);
+    }
+    return colour;
+}
+
+static result material_slots_grow(scene_builder *b)
+{
+    const size_t size = b->material_slots.count ? b->material_slots.count * 2 : MATERIAL_SLOTS_FIRST;
+    buffer slots = buffer_make(b->memory, sizeof(uint32_t));
+    uint32_t *slot = buffer_push(&slots, size);
+    if (!slot) return RESULT_NO_MEMORY;
+    memset(slot, 0, size * sizeof *slot);
+    const scene_material *materials = b->materials.items;
+    for (uint32_t m = 0; m < b->materials.count; ++m) {
+        size_t at = XXH3_64bits(materials[m].name, strlen(materials[m].name)) & (size - 1);
+        while (slot[at]) at = (at + 1) & (size - 1);
+        slot[at] = m + 1;
+    }
+    buffer_free(&b->material_slots);
+    b->material_slots = slots;
+    return RESULT_OK;
+}
+
+result scene_builder_material(scene_builder *b, const char *name, size_t length, uint32_t flags, uint32_t *out)
+{
+    if (b->materials.count * 2 >= b->material_slots.count && material_slots_grow(b) != RESULT_OK) return RESULT_NO_MEMORY;
+    const size_t size = b->material_slots.count;
+    uint32_t *slots = b->material_slots.items;
+    const scene_material *materials = b->materials.items;
+    size_t at = XXH3_64bits(name, length) & (size - 1);
+    for (; slots[at]; at = (at + 1) & (size - 1)) {
+        const char *other = materials[slots[at] - 1].name;
+        if (strlen(other) == length && memcmp(other, name, length) == 0) {
+            *out = slots[at] - 1;
+            return RESULT_OK;
+        }
+    }
+    if (b->materials.count >= MATERIALS_MOST) return RESULT_BAD_INPUT;
+    const char *copy = arena_text(&b->names, name, length);
+    scene_material *m = copy ? buffer_push(&b->materials, 1) : NULL;
+    if (!m) return RESULT_NO_MEMORY;
+    *m = (scene_material){copy, flags, colour_of_name(name, length)};
+    *out = slots[at] = (uint32_t)b->materials.count;
+    --*out;
+    return RESULT_OK;
+}
+
+result scene_builder_material_colour(scene_builder *b, uint32_t material, uint32_t colour)
+{
+    if (material >= b->materials.count) return RESULT_BAD_INPUT;
+    ((scene_material *)b->materials.items)[material].colour = colour;
+    return RESULT_OK;
+}
+
+result scene_builder_object(scene_builder *b, const char *name, size_t length, uint32_t *out)
+{
+    const char *copy = arena_text(&b->names, name, length);
+    scene_object *o = copy ? buffer_push(&b->objects, 1) : NULL;
+    if (!o) return RESULT_NO_MEMORY;
+    *o = (scene_object){.name = copy};
+    *out = (uint32_t)b->objects.count - 1;
+    return RESULT_OK;
+}
+
+static uint32_t snorm8x3(const float v[3])
+{
+    const double length = sqrt((double)v[0] * v[0] + (double)v[1] * v[1] + (double)v[2] * v[2]);
+    if (!(length > 0) || !isfinite(length)) return 0;
+    uint32_t packed = 0;
+    for (int i = 0; i < 3; ++i) packed |= ((uint32_t)(int32_t)lrint(v[i] / length * 127) & 0xff) << (8 * i);
+    return packed;
+}
+
+result scene_builder_vertices(scene_builder *b, const builder_vertex *vertices, size_t count, uint32_t material, uint32_t *out_first)
+{
+    const size_t first = b->positions.count;
+    if (material >= b->materials.count || count > UINT32_MAX || first > UINT32_MAX - count) return RESULT_BAD_INPUT;
+    for (size_t i = 0; i < count; ++i)
+        for (int k = 0; k < 3; ++k)
+            if (!isfinite(vertices[i].position[k])) return RESULT_BAD_INPUT;
+    double(*position)[3] = buffer_push(&b->positions, count);
+    uint32_t *normal = position ? buffer_push(&b->normals, count) : NULL;
+    float(*texcoord)[2] = normal ? buffer_push(&b->texcoords, count) : NULL;
+    uint16_t *owner = texcoord ? buffer_push(&b->vertex_materials, count) : NULL;
+    if (!owner) return RESULT_NO_MEMORY;
+    for (size_t i = 0; i < count; ++i) {
+        memcpy(position[i], vertices[i].position, sizeof position[i]);
+        normal[i] = snorm8x3(vertices[i].normal);
+        texcoord[i][0] = vertices[i].texcoord[0];
+        texcoord[i][1] = vertices[i].texcoord[1];
+        owner[i] = (uint16_t)material;
+    }
+    *out_first = (uint32_t)first;
+    return RESULT_OK;
+}
+
+static result item_is_sound(const scene_builder *b, const builder_item *item)
+{
+    if (item->index_count == 0 || item->index_count % 3 || item->polygon_count == 0) return RESULT_BAD_INPUT;
+    if (item->material >= b->materials.count || item->object >= b->objects.count) return RESULT_BAD_INPUT;
+    for (uint32_t i = 0; i < item->index_count; ++i)
+        if (item->indices[i] >= b->positions.count) return RESULT_BAD_INPUT;
+    for (uint32_t i = 0; i < item->loop_count; ++i)
+        if (item->loop[i] >= b->positions.count) return RESULT_BAD_INPUT;
+    for (int k = 0; k < 4; ++k)
+        if (item->flags & CULL_ITEM_WALL && (item->loop_count < 3 || !isfinite(item->plane[k]))) return RESULT_BAD_INPUT;
+    uint64_t triangles = 0;
+    for (uint32_t i = 0; i < item->polygon_count; ++i) triangles += item->polygon_triangles ? item->polygon_triangles[i] : 1;
+    return triangles == item->index_count / 3 ? RESULT_OK : RESULT_BAD_INPUT;
+}
+
+static uint32_t flags_of_material(uint32_t material_flags)
+{
+    if (material_flags & MATERIAL_TRANSLUCENT) return CULL_ITEM_SEE_THROUGH | CULL_ITEM_TWO_SIDED;
+    if (material_flags & MATERIAL_CUT_OUT) return CULL_ITEM_CUT_OUT | CULL_ITEM_TWO_SIDED;
+    return 0;
+}
+
+static result stream_item(scene_builder *b, builder_stream *s, const builder_item *item)
+{
+    if (item_is_sound(b, item) != RESULT_OK) return RESULT_BAD_INPUT;
+    if (s->indices.count > UINT32_MAX - item->index_count || s->polygon_triangles.count > UINT32_MAX / 2 - item->polygon_count) return RESULT_BAD_INPUT;
+    const uint32_t first_index = (uint32_t)s->indices.count, first_polygon = (uint32_t)s->polygon_triangles.count;
+    if (!buffer_append(&s->indices, item->indices, item->index_count)) return RESULT_NO_MEMORY;
+    uint32_t *triangles = buffer_push(&s->polygon_triangles, item->polygon_count);
+    scene_item *out = triangles ? buffer_push(&s->items, 1) : NULL;
+    if (!out) return RESULT_NO_MEMORY;
+    for (uint32_t i = 0; i < item->polygon_count; ++i) triangles[i] = item->polygon_triangles ? item->polygon_triangles[i] : 1;
+    const scene_material *materials = b->materials.items;
+    *out = (scene_item){first_index, item->index_count, first_polygon, item->polygon_count, item->material, item->object,
+                        item->flags | flags_of_material(materials[item->material].flags)};
+    return RESULT_OK;
+}
+
+result scene_builder_item(scene_builder *b, const builder_item *item)
+{
+    const result done = stream_item(b, &b->statics, item);
+    if (done != RESULT_OK) return done;
+    builder_wall *wall = buffer_push(&b->walls, 1);
+    if (!wall) return RESULT_NO_MEMORY;
+    const uint32_t loop_count = item->flags & CULL_ITEM_WALL ? item->loop_count : 0;
+    *wall = (builder_wall){.first_vertex = (uint32_t)b->wall_vertices.count, .vertex_count = loop_count};
+    memcpy(wall->plane, item->plane, sizeof wall->plane);
+    b->wall_count += loop_count != 0;
+    return loop_count && !buffer_append(&b->wall_vertices, item->loop, loop_count) ? RESULT_NO_MEMORY : RESULT_OK;
+}
+
+result scene_builder_mover(scene_builder *b, const char *name, const double open_offset[3], const builder_item *item)
+{
+    const result done = stream_item(b, &b->movers, item);
+    if (done != RESULT_OK) return done;
+    const char *copy = arena_text(&b->names, name, strlen(name));
+    scene_mover *mover = copy ? buffer_push(&b->mover_list, 1) : NULL;
+    if (!mover) return RESULT_NO_MEMORY;
+    *mover = (scene_mover){.name = copy};
+    memcpy(mover->open_offset, open_offset, sizeof mover->open_offset);
+    return RESULT_OK;
+}
+
+result scene_builder_place(scene_builder *b, const scene_place *place)
+{
+    return buffer_append(&b->places, place, 1) ? RESULT_OK : RESULT_NO_MEMORY;
+}
+
+result scene_builder_solid(scene_builder *b, solid_kind kind, const scene_solid_plane *planes, uint32_t plane_count,
+                           const double min[3], const double max[3])
+{
+    scene_solid solid = {.first_plane = (uint32_t)b->solid_planes.count, .plane_count = plane_count, .kind = kind};
+    memcpy(solid.min, min, sizeof solid.min);
+    memcpy(solid.max, max, sizeof solid.max);
+    if (!buffer_append(&b->solid_planes, planes, plane_count)) return RESULT_NO_MEMORY;
+    return buffer_append(&b->solids, &solid, 1) ? RESULT_OK : RESULT_NO_MEMORY;
+}

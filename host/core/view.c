@@ -1,0 +1,184 @@
+// Cameras to views and volumes: see view.h. All in double from the camera; floats only at the very end.
+// SPDX-License-Identifier: MIT
+#include "view.h"
+
+#include <portcullis/plane.h>
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+// A turn of `up` by rounding is 2^-52 over this: far below the guard band's 2^-20.
+static const double LEAST_SINE_UP_FORWARD = 1.0 / 1048576;
+static const double MOST_EYE_M = 1e18;                       // products of coordinates stay finite with room
+static const double LEAST_NEAR_M = 1e-30, MOST_NEAR_M = 1e30; // near_distance and the matrix are floats
+static const double LEAST_ASPECT = 1.0 / 1024, MOST_ASPECT = 1024;
+static const double PI = 3.14159265358979323846;
+
+static double dot(const double a[3], const double b[3])
+{
+    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double out[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+// Scales by a power of two first: squares of denormal or huge components would be lost. Returns 0 for no direction.
+static int unit(const double v[3], double out[3])
+{
+    const double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    if (!(largest > 0) || !isfinite(largest)) return 0;
+    int exponent;
+    (void)frexp(largest, &exponent);
+    double scaled[3];
+    for (int i = 0; i < 3; i++) scaled[i] = ldexp(v[i], -exponent);
+    const double length = sqrt(dot(scaled, scaled));
+    for (int i = 0; i < 3; i++) out[i] = scaled[i] / length;
+    return 1;
+}
+
+static int is_finite3(const double v[3])
+{
+    return isfinite(v[0]) && isfinite(v[1]) && isfinite(v[2]);
+}
+
+const char *camera_fault(const camera *c)
+{
+    if (!is_finite3(c->eye)) return "the eye is not finite";
+    for (int i = 0; i < 3; i++)
+        if (fabs(c->eye[i]) > MOST_EYE_M) return "the eye is more than 1e18 m away";
+    if (!is_finite3(c->forward) || !is_finite3(c->up)) return "forward or up is not finite";
+    if (!(c->fovy_deg >= 1 && c->fovy_deg <= 170)) return "the vertical field of view is not within 1 to 170 degrees";
+    if (!(c->aspect >= LEAST_ASPECT && c->aspect <= MOST_ASPECT)) return "the aspect is not within 1/1024 to 1024";
+    if (!(c->near_m >= LEAST_NEAR_M && c->near_m <= MOST_NEAR_M)) return "near is not within 1e-30 to 1e30 m";
+    if (!(c->far_m > c->near_m)) return "far is not beyond near";
+    double forward[3], up[3], right[3];
+    if (!unit(c->forward, forward)) return "forward is zero";
+    if (!unit(c->up, up)) return "up is zero";
+    cross(forward, up, right);
+    if (!(dot(right, right) > LEAST_SINE_UP_FORWARD * LEAST_SINE_UP_FORWARD)) return "up is parallel to forward";
+    return NULL;
+}
+
+void camera_axes(const camera *c, double right[3], double up[3], double back[3])
+{
+    double forward[3], wanted_up[3], side[3];
+    const int is_usable = unit(c->forward, forward) && unit(c->up, wanted_up);
+    assert(is_usable);
+    (void)is_usable;
+    cross(forward, wanted_up, side);
+    (void)unit(side, right);
+    for (int i = 0; i < 3; i++) back[i] = 0.0 - forward[i]; // not -0: bits of a matrix are compared
+    cross(back, right, side);
+    (void)unit(side, up);
+}
+
+// Half the picture's height at distance 1.
+static double half_tangent(const camera *c)
+{
+    return tan(c->fovy_deg * (PI / 360));
+}
+
+void camera_clip_from_eye(const camera *c, double out[16])
+{
+    double right[3], up[3], back[3];
+    camera_axes(c, right, up, back);
+    const double t = half_tangent(c);
+    const double share = c->near_m / c->far_m; // 0 for an infinite far; below 1 as near < far, even of neighbours
+    const double slope = share / (1 - share), at_zero = c->near_m / (1 - share);
+    for (int i = 0; i < 3; i++) {
+        out[4 * i + 0] = right[i] / (t * c->aspect);
+        out[4 * i + 1] = up[i] / t;
+        out[4 * i + 2] = slope * back[i];
+        out[4 * i + 3] = 0.0 - back[i];
+    }
+    out[12] = out[13] = out[15] = 0;
+    out[14] = at_zero;
+}
+
+static double zone_corner_height(const cull_plane *p, const cull_box *b)
+{
+    const double n[3] = {(double)p->normal.x, (double)p->normal.y, (double)p->normal.z};
+    const double low[3] = {(double)b->min.x, (double)b->min.y, (double)b->min.z};
+    const double high[3] = {(double)b->max.x, (double)b->max.y, (double)b->max.z};
+    double height = (double)p->offset;
+    for (int i = 0; i < 3; i++) height += n[i] * (n[i] >= 0 ? low[i] : high[i]);
+    return height;
+}
+
+static void volume_add(view_volume *volume, cull_plane plane, const cull_box *zone_box)
+{
+    if (zone_corner_height(&plane, zone_box) >= 0) return; // the whole zone is inside
+    volume->planes[volume->plane_count++] = plane;
+}
+
+// The side of the picture where `axis` reaches `tangent`: through the eye, the picture inside.
+static void volume_add_side(view_volume *volume, const cull_guard *guard, const double axis[3], double tangent, const cull_box *zone_box)
+{
+    const double length = sqrt(1 + tangent * tangent);
+    double normal[3];
+    for (int i = 0; i < 3; i++) normal[i] = (axis[i] + tangent * guard->forward[i]) / length;
+    volume_add(volume, cull_guard_plane(guard, normal, 0), zone_box);
+}
+
+static void volume_derive(const camera *c, const cull_guard *guard, const double right[3], const double up[3], const cull_box *zone_box,
+                          view_volume *volume)
+{
+    const double t = half_tangent(c), wide = t * c->aspect;
+    volume->plane_count = 0;
+    for (int side = -1; side <= 1; side += 2) {
+        double axis[3];
+        for (int i = 0; i < 3; i++) axis[i] = side * right[i];
+        volume_add_side(volume, guard, axis, wide, zone_box);
+        for (int i = 0; i < 3; i++) axis[i] = side * up[i];
+        volume_add_side(volume, guard, axis, t, zone_box);
+    }
+    if (!isfinite(c->far_m)) return;
+    double back[3];
+    for (int i = 0; i < 3; i++) back[i] = -guard->forward[i];
+    volume_add(volume, cull_guard_plane(guard, back, c->far_m), zone_box);
+}
+
+static void matrix_derive(const camera *c, const double eye[3], float out[16])
+{
+    double m[16];
+    camera_clip_from_eye(c, m);
+    for (int row = 0; row < 4; row++) {
+        const double line[3] = {m[row], m[4 + row], m[8 + row]};
+        m[12 + row] -= dot(line, eye);
+    }
+    for (int i = 0; i < 16; i++) out[i] = (float)m[i];
+}
+
+void view_derive(const camera *c, const view_frame *f, const double zone_origin[3], const cull_box *zone_box, cull_view *view,
+                 view_volume *volume)
+{
+    assert(!camera_fault(c) && f->width_px > 0 && f->height_px > 0);
+    double right[3], up[3], back[3];
+    camera_axes(c, right, up, back);
+    const double t = half_tangent(c), wide = t * c->aspect;
+    const double pixel = fmax(2 * t / f->height_px, 2 * wide / f->width_px);
+    cull_guard guard = {.pixel_tangent = pixel,
+                        .reach = sqrt((t + pixel) * (t + pixel) + (wide + pixel) * (wide + pixel) + 1),
+                        .radius = (double)cull_box_radius(*zone_box)};
+    for (int i = 0; i < 3; i++) {
+        guard.eye[i] = c->eye[i] - zone_origin[i];
+        guard.forward[i] = -back[i];
+    }
+    memset(view, 0, sizeof *view);
+    for (int i = 0; i < 3; i++) view->eye[i] = (float)guard.eye[i];
+    view->eye[3] = 1;
+    matrix_derive(c, guard.eye, view->clip_from_zone);
+    view->pixels_per_tangent = (float)(f->height_px / (2 * t));
+    view->near_distance = (float)c->near_m;
+    view->width_px = f->width_px;
+    view->height_px = f->height_px;
+    view->purpose = f->purpose;
+    view->frame = f->frame;
+    view->flags = f->flags;
+    volume_derive(c, &guard, right, up, zone_box, volume);
+}

@@ -1,0 +1,37 @@
+// Cameras, and what a culler is told of them: view and volume, derived in double, moved out by the guard band.
+// SPDX-License-Identifier: MIT
+#ifndef PORTCULLIS_HOST_VIEW_H
+#define PORTCULLIS_HOST_VIEW_H
+
+#include <portcullis/culler.h>
+
+// World coordinates, metres. forward and up need not be normal or perpendicular.
+typedef struct camera {
+    double eye[3], forward[3], up[3];
+    double fovy_deg, aspect; // width / height of the image plane
+    double near_m, far_m;    // far_m may be INFINITY
+} camera;
+
+// NULL when the camera is usable, else what is wrong with it, a constant text.
+const char *camera_fault(const camera *c);
+// Orthonormal: right, up, back (the eye looks along -back). The camera must be usable.
+void camera_axes(const camera *c, double right[3], double up[3], double back[3]);
+// Column major; p relative to the eye, in world axes; reversed z: 1 at near_m, 0 at far_m. The same bits everywhere.
+void camera_clip_from_eye(const camera *c, double out[16]);
+
+typedef struct view_frame {
+    uint32_t width_px, height_px, frame, flags;
+    cull_purpose purpose;
+} view_frame;
+
+typedef struct view_volume {
+    cull_plane planes[CULL_MAX_PLANES];
+    uint32_t plane_count;
+} view_volume;
+
+// The camera seen from a zone: view, and the whole frustum as a guarded volume. Planes that the zone's box lies inside
+// of are left out. The far plane is one of them while far_m is finite.
+void view_derive(const camera *c, const view_frame *f, const double zone_origin[3], const cull_box *zone_box, cull_view *view,
+                 view_volume *volume);
+
+#endif

@@ -1,0 +1,42 @@
+// What a viewer holds: shared by viewer.c, which sizes it once, frame.c, which uses it, and batch_check.c.
+// SPDX-License-Identifier: MIT
+#ifndef PORTCULLIS_HOST_VIEWER_H
+#define PORTCULLIS_HOST_VIEWER_H
+
+#include "frame.h"
+#include "list.h"
+#include "runs.h"
+
+typedef struct viewer_stage {
+    cull_query *query;
+    list runs; // cull_run, max_runs (+ mover_capacity for who takes movers)
+    uint32_t run_capacity;
+} viewer_stage;
+
+struct viewer {
+    const chain *chain;
+    const allocator *memory;
+    report *log;
+    const runs_kernel *kernel;
+    viewer_checks checks;
+    viewer_stage stages[CHAIN_STAGES_MOST];
+    uint32_t last;                 // the stage that may step: the last select or filter
+    uint32_t first;                // the stage that starts: 0, or a filter that walks the hierarchy
+    list tests, captures, pictures; // of the stepping stage
+    list select_captures, select_pictures, keep_captures, keep_pictures; // of a select behind which a filter stands
+    list answers, movers, mover_runs;
+    list seen;                     // one bit an item and mover, for VIEWER_CHECK_ALL
+    uint8_t *slots;
+    uint32_t slot_count, answer_capacity;
+    void *scratch;
+    size_t scratch_size;
+    cull_run whole; // all items of the zone
+    double clock_overhead_ns;
+    uint32_t told_fault;
+};
+
+// NULL when what the culler of `stage` wrote may be used, else what is wrong with it. `earlier` are the runs that it
+// had given in earlier steps of the frame.
+const char *batch_fault(viewer *v, uint32_t stage, const cull_batch *batch, uint32_t earlier_runs, uint32_t earlier_pictures);
+
+#endif

@@ -1,0 +1,114 @@
+// Reader of .stl, ascii and binary: checked here, because OpenMesh takes any bytes for numbers, then read by OpenMesh.
+// SPDX-License-Identifier: MIT
+#include "../core/file.h"
+#include "../mesh/mesh.h"
+#include "import.h"
+#include "mesh_soup.h"
+#include "mesh_text.h"
+
+#include <string.h>
+
+enum { STL_HEAD_BYTES = 84, STL_TRIANGLE_BYTES = 50, STL_NORMAL_BYTES = 12 };
+
+static uint32_t little32(const char *bytes)
+{
+    const unsigned char *b = (const unsigned char *)bytes;
+    return (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+static int is_binary(const char *bytes, size_t size)
+{
+    return size >= STL_HEAD_BYTES && size == STL_HEAD_BYTES + (size_t)STL_TRIANGLE_BYTES * little32(bytes + 80);
+}
+
+static result check_binary(const char *path, const char *bytes, size_t size, report *r)
+{
+    for (size_t at = STL_HEAD_BYTES; at < size; at += STL_TRIANGLE_BYTES)
+        for (size_t k = 0; k < 9; ++k) {
+            const size_t place = at + STL_NORMAL_BYTES + 4 * k;
+            const uint32_t bits = little32(bytes + place);
+            float value;
+            memcpy(&value, &bits, sizeof value);
+            const char *fault = coordinate_fault((double)value);
+            if (fault) return report_error(r, path, 0, "at byte %zu: %s", place, fault);
+        }
+    return RESULT_OK;
+}
+
+static int word_is(const char *word, size_t length, const char *text)
+{
+    return length == strlen(text) && memcmp(word, text, length) == 0;
+}
+
+// The lines that OpenMesh's reader looks for, in the order in which it takes them for granted.
+static result check_loop(mesh_text *t)
+{
+    const char *word;
+    double p[3];
+    for (int i = 0; i < 3; ++i) {
+        text_next_line(t);
+        const size_t length = text_word(t, &word);
+        if (length == 0 || !word_is(word, length, "vertex")) return report_error(t->report, t->path, t->line, "not the vertex that an outer loop goes on with; is the file whole?");
+        const result done = text_position(t, "vertex", p);
+        if (done != RESULT_OK) return done;
+        if (!text_line_ended(t)) return report_error(t->report, t->path, t->line, "vertex: more than 3 coordinates; write x y z");
+    }
+    return RESULT_OK;
+}
+
+static result check_ascii(mesh_text t)
+{
+    const char *word = NULL;
+    size_t length = text_word(&t, &word);
+    if (length == 0 || !word_is(word, length, "solid")) return report_error(t.report, t.path, 1, "neither begins with solid nor has the size of a binary .stl; is the file whole?");
+    for (text_next_line(&t); !text_ended(&t); text_next_line(&t)) {
+        length = text_word(&t, &word);
+        if (text_is_noise(&t)) return report_error(t.report, t.path, t.line, "a byte that no text has; is this an .stl file?");
+        if (length == 0 || !word_is(word, length, "outer")) continue;
+        const result done = check_loop(&t);
+        if (done != RESULT_OK) return done;
+    }
+    return RESULT_OK;
+}
+
+static result fill_soup(mesh_soup *soup, const char *path, const double *triangles, uint32_t count)
+{
+    const soup_name fallback = {"default", 7};
+    const soup_object object = {soup_file_stem(path), 0};
+    if (!buffer_append(&soup->materials, &fallback, 1) || !buffer_append(&soup->objects, &object, 1)) return RESULT_NO_MEMORY;
+    if (!buffer_append(&soup->positions, triangles, 3 * (size_t)count)) return RESULT_NO_MEMORY;
+    for (uint32_t i = 0; i < count; ++i) {
+        const soup_corner corners[3] = {{3 * i, SOUP_NO_TEXCOORD}, {3 * i + 1, SOUP_NO_TEXCOORD}, {3 * i + 2, SOUP_NO_TEXCOORD}};
+        if (!buffer_append(&soup->corners, corners, 3) || soup_polygon_end(soup, 3 * (size_t)i, 0) != RESULT_OK) return RESULT_NO_MEMORY;
+    }
+    return RESULT_OK;
+}
+
+static result read_soup(mesh_soup *soup, const char *path, const char *bytes, size_t size, const allocator *memory, report *r)
+{
+    double *triangles;
+    uint32_t count = 0;
+    const stl_form form = is_binary(bytes, size) ? STL_BINARY : STL_ASCII;
+    result done = form == STL_BINARY ? check_binary(path, bytes, size, r) : check_ascii(text_make(path, bytes, size, r));
+    if (done != RESULT_OK) return done;
+    arena scratch = arena_make(memory);
+    done = mesh_read_stl(path, bytes, size, form, &scratch, r, &triangles, &count);
+    if (done == RESULT_OK && count == 0) done = report_error(r, path, 0, "no facets; is it an .stl file?");
+    if (done == RESULT_OK && fill_soup(soup, path, triangles, count) != RESULT_OK) done = report_no_memory(r, path);
+    arena_free(&scratch);
+    return done;
+}
+
+result import_stl(const char *path, const allocator *memory, report *r, scene **out)
+{
+    char *bytes;
+    size_t size;
+    result done = file_read(path, memory, r, &bytes, &size);
+    if (done != RESULT_OK) return done;
+    mesh_soup soup = soup_make(memory);
+    done = read_soup(&soup, path, bytes, size, memory, r);
+    memory_free(memory, bytes, size + 1, 1);
+    if (done == RESULT_OK) done = mesh_scene_build(&soup, path, memory, r, out);
+    soup_free(&soup);
+    return done;
+}

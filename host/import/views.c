@@ -1,0 +1,219 @@
+// Camera paths: .views files in and out, and the choice between a file and automatic views.
+// SPDX-License-Identifier: MIT
+#include "views.h"
+
+#include "../core/file.h"
+#include "number.h"
+#include "views_auto.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { NUMBERS = 13, NUMBER_BYTES = 32, VIEWS_MOST = 100000 };
+
+// ---- Reading ----
+
+typedef struct view_reader {
+    const char *path, *at, *end;
+    size_t line;
+    report *report;
+} view_reader;
+
+static int is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r';
+}
+
+static void skip_blanks(view_reader *v)
+{
+    while (v->at < v->end && is_blank(*v->at)) v->at++;
+}
+
+static int at_line_end(view_reader *v)
+{
+    skip_blanks(v);
+    return v->at >= v->end || *v->at == '\n' || *v->at == '#';
+}
+
+static void next_line(view_reader *v)
+{
+    while (v->at < v->end && *v->at != '\n') v->at++;
+    if (v->at < v->end) v->at++;
+    v->line++;
+}
+
+// The far plane may be at infinity, and is then written so.
+static const char *read_infinity(const view_reader *v, double *out)
+{
+    static const char word[] = "inf";
+    if ((size_t)(v->end - v->at) < sizeof word - 1 || memcmp(v->at, word, sizeof word - 1) != 0) return NULL;
+    *out = INFINITY;
+    return v->at + sizeof word - 1;
+}
+
+static result read_view(view_reader *v, camera *out)
+{
+    double n[NUMBERS];
+    for (int i = 0; i < NUMBERS; ++i) {
+        skip_blanks(v);
+        const char *behind = number_read(v->at, v->end, &n[i]);
+        if (!behind && i == NUMBERS - 1) behind = read_infinity(v, &n[i]);
+        if (!behind || (behind < v->end && !is_blank(*behind) && *behind != '\n' && *behind != '#'))
+            return report_error(v->report, v->path, v->line,
+                                "number %d of 13 is missing or no decimal number; write eye(3) dir(3) up(3) fovy_deg aspect near far", i + 1);
+        v->at = behind;
+    }
+    if (!at_line_end(v)) return report_error(v->report, v->path, v->line, "more than 13 numbers; write one view a line");
+    *out = (camera){.fovy_deg = n[9], .aspect = n[10], .near_m = n[11], .far_m = n[12]};
+    memcpy(out->eye, n, sizeof out->eye);
+    memcpy(out->forward, n + 3, sizeof out->forward);
+    memcpy(out->up, n + 6, sizeof out->up);
+    const char *wrong = camera_fault(out);
+    return wrong ? report_error(v->report, v->path, v->line, "%s; correct the view", wrong) : RESULT_OK;
+}
+
+static result read_views(view_reader *v, buffer *cameras)
+{
+    for (; v->at < v->end; next_line(v)) {
+        if (at_line_end(v)) continue;
+        camera *c = buffer_push(cameras, 1);
+        if (!c) return report_no_memory(v->report, v->path);
+        const result done = read_view(v, c);
+        if (done != RESULT_OK) return done;
+        if (cameras->count > VIEWS_MOST) return report_error(v->report, v->path, v->line, "over 100,000 views; split the path");
+    }
+    return cameras->count ? RESULT_OK : report_error(v->report, v->path, 0, "no view in it; write 13 numbers a line");
+}
+
+static void name_path(const char *path, char *name, size_t size)
+{
+    const char *base = strrchr(path, '/');
+    base = base ? base + 1 : path;
+    static const char ending[] = ".views";
+    size_t length = strlen(base);
+    if (length > sizeof ending - 1 && strcmp(base + length - (sizeof ending - 1), ending) == 0) length -= sizeof ending - 1;
+    snprintf(name, size, "%.*s", length < size ? (int)length : (int)size - 1, base);
+}
+
+static result keep(const buffer *cameras, const char *path, report *r, camera_path *out)
+{
+    camera *kept = memory_alloc(cameras->memory, cameras->count, sizeof *kept);
+    if (!kept) return report_no_memory(r, path);
+    memcpy(kept, cameras->items, cameras->count * sizeof *kept);
+    *out = (camera_path){.cameras = kept, .count = (uint32_t)cameras->count};
+    name_path(path, out->name, sizeof out->name);
+    return RESULT_OK;
+}
+
+result camera_path_parse(const char *path, const char *text, size_t size, const allocator *memory, report *r, camera_path *out)
+{
+    view_reader v = {path, text, text + size, 1, r};
+    buffer cameras = buffer_make(memory, sizeof(camera));
+    result done = read_views(&v, &cameras);
+    if (done == RESULT_OK) done = keep(&cameras, path, r, out);
+    buffer_free(&cameras);
+    return done;
+}
+
+// ---- Automatic ----
+
+typedef enum auto_kind { AUTO_NONE, AUTO_VIEWS, AUTO_WALK } auto_kind;
+
+static auto_kind auto_kind_of(const char *what, const char **out_count)
+{
+    static const char views[] = "auto:", walk[] = "auto:walk:";
+    const int is_walk = strncmp(what, walk, sizeof walk - 1) == 0;
+    if (strncmp(what, views, sizeof views - 1) != 0) return AUTO_NONE;
+    *out_count = what + (is_walk ? sizeof walk : sizeof views) - 1;
+    return is_walk ? AUTO_WALK : AUTO_VIEWS;
+}
+
+static uint32_t read_count(const char *text)
+{
+    uint32_t count = 0;
+    if (!*text) return 0;
+    for (; *text; ++text) {
+        if (*text < '0' || *text > '9' || count > VIEWS_MOST) return 0;
+        count = count * 10 + (uint32_t)(*text - '0');
+    }
+    return count <= VIEWS_MOST ? count : 0;
+}
+
+static result make_automatic(auto_kind kind, uint32_t count, const scene *s, double aspect, const allocator *memory, report *r, camera_path *out)
+{
+    auto_views a;
+    camera *cameras = memory_alloc(memory, count, sizeof *cameras);
+    if (!cameras) return report_no_memory(r, s->path);
+    result done = auto_views_open(s, aspect, memory, r, &a);
+    if (done == RESULT_OK) {
+        done = kind == AUTO_WALK ? auto_walk_make(&a, count, cameras) : auto_views_make(&a, count, cameras);
+        auto_views_close(&a);
+    }
+    if (done != RESULT_OK) {
+        memory_free(memory, cameras, count, sizeof *cameras);
+        return done;
+    }
+    *out = (camera_path){.cameras = cameras, .count = count};
+    snprintf(out->name, sizeof out->name, kind == AUTO_WALK ? "auto:walk:%u" : "auto:%u", count);
+    return RESULT_OK;
+}
+
+result camera_path_load(const char *what, const scene *s, double aspect, const allocator *memory, report *r, camera_path *out)
+{
+    const char *number = NULL;
+    const auto_kind kind = auto_kind_of(what, &number);
+    if (kind != AUTO_NONE) {
+        const uint32_t count = read_count(number);
+        if (!count) return report_error(r, NULL, 0, "--views %s: write auto:N or auto:walk:N, N from 1 to 100000", what);
+        return make_automatic(kind, count, s, aspect, memory, r, out);
+    }
+    char *text;
+    size_t size;
+    result done = file_read(what, memory, r, &text, &size);
+    if (done != RESULT_OK) return done;
+    done = camera_path_parse(what, text, size, memory, r, out);
+    memory_free(memory, text, size + 1, 1);
+    return done;
+}
+
+// ---- Writing ----
+
+// 17 digits tell every double from its neighbours, so the text reads back bit for bit.
+static size_t write_view(const camera *c, char *to, size_t room)
+{
+    const double n[NUMBERS] = {c->eye[0], c->eye[1], c->eye[2], c->forward[0], c->forward[1], c->forward[2], c->up[0],
+                               c->up[1],  c->up[2],  c->fovy_deg, c->aspect,   c->near_m,     c->far_m};
+    size_t used = 0;
+    for (int i = 0; i < NUMBERS; ++i) {
+        const int length = snprintf(to + used, room - used, "%.17g%c", n[i], i + 1 < NUMBERS ? ' ' : '\n');
+        for (int k = 0; k < length; ++k)
+            if (to[used + (size_t)k] == ',') to[used + (size_t)k] = '.'; // a locale's decimal comma
+        used += (size_t)length;
+    }
+    return used;
+}
+
+result camera_path_text(const camera_path *p, const allocator *memory, char **out_text, size_t *out_size)
+{
+    const size_t room = (size_t)p->count * NUMBERS * NUMBER_BYTES + 1;
+    char *wide = memory_alloc(memory, room, 1);
+    if (!wide) return RESULT_NO_MEMORY;
+    size_t size = 0;
+    for (uint32_t i = 0; i < p->count; ++i) size += write_view(&p->cameras[i], wide + size, room - size);
+    char *text = memory_alloc(memory, size + 1, 1);
+    if (text) {
+        memcpy(text, wide, size);
+        text[size] = 0;
+        *out_text = text;
+        *out_size = size;
+    }
+    memory_free(memory, wide, room, 1);
+    return text ? RESULT_OK : RESULT_NO_MEMORY;
+}
+
+void camera_path_free(camera_path *p, const allocator *memory)
+{
+    memory_free(memory, p->cameras, p->count, sizeof *p->cameras);
+    *p = (camera_path){0};
+}

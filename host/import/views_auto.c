@@ -1,0 +1,183 @@
+// Automatic views auto:N: from a map's point entities that stand in air, else spread over the scene.
+// SPDX-License-Identifier: MIT
+#include "views_auto.h"
+
+#include <math.h>
+
+enum { SPREAD_TRIES = 400 };
+static const double PI = 3.14159265358979323846;
+static const double PITCH_MOST_DEG = 25, FOVY_DEG = 60;
+static const double FAR_LEAST_M = 16;
+static const double FIGURE_EYE_M = 0.7;       // a player's or monster's eye above its origin
+static const double MESH_CLEARANCE_PART = 0.02; // of the diagonal: a model of 20 cm has no place 12 cm from itself
+static const double FLAT_SCENE = 0.25;        // height by width, below which a scene is ground to stand on, not a model
+static const uint64_t SEED = 0x706f727463756c6c; // "portcull"
+
+// ---- Cameras ----
+
+static double far_for(const auto_views *a, const double at[3])
+{
+    double diagonal = 0, distance = 0;
+    for (int k = 0; k < 3; ++k) {
+        const double extent = a->high[k] - a->low[k], off = at[k] - (a->low[k] + a->high[k]) / 2;
+        diagonal += extent * extent;
+        distance += off * off;
+    }
+    int exponent;
+    frexp(2 * sqrt(diagonal) + sqrt(distance), &exponent);
+    return fmax(FAR_LEAST_M, ldexp(1, exponent));
+}
+
+static void direction_of(double yaw, double pitch, double out[3])
+{
+    out[0] = cos(pitch) * cos(yaw);
+    out[1] = sin(pitch);
+    out[2] = cos(pitch) * sin(yaw);
+}
+
+camera auto_camera(const auto_views *a, const double at[3], double yaw, double pitch)
+{
+    camera c = {.up = {0, 1, 0}, .fovy_deg = FOVY_DEG, .aspect = a->aspect, .near_m = AUTO_NEAR_M, .far_m = far_for(a, at)};
+    direction_of(yaw, pitch, c.forward);
+    for (int k = 0; k < 3; ++k) c.eye[k] = a->scene->zone.origin[k] + at[k];
+    return c;
+}
+
+static double random_pitch(random_stream *r)
+{
+    return random_between(r, -PITCH_MOST_DEG, PITCH_MOST_DEG) * (PI / 180);
+}
+
+// ---- Places of a map ----
+
+static int is_in_air(const auto_views *a, const double at[3])
+{
+    return free_space_clearance(a->space, at, AUTO_CLEARANCE_M, SPACE_SOLIDS | SPACE_TRIANGLES | SPACE_BOXES) >= AUTO_CLEARANCE_M &&
+           free_space_clearance(a->space, at, AUTO_CLEARANCE_M, SPACE_LIQUIDS) > 0;
+}
+
+static result find_places(auto_views *a)
+{
+    const scene *s = a->scene;
+    for (uint32_t i = 0; s->is_map && i < s->place_count; ++i) {
+        eye e;
+        for (int k = 0; k < 3; ++k) e.at[k] = s->places[i].position[k] - s->zone.origin[k];
+        if (s->places[i].kind != PLACE_OTHER) e.at[1] += FIGURE_EYE_M;
+        int inside = 1; // a place outside of all geometry sees nothing of the level
+        for (int k = 0; k < 3; ++k) inside &= e.at[k] >= a->low[k] && e.at[k] <= a->high[k];
+        if (inside && is_in_air(a, e.at) && !buffer_append(&a->places, &e, 1)) return report_no_memory(a->report, s->path);
+    }
+    eye *places = a->places.items;
+    for (uint32_t i = (uint32_t)a->places.count; i > 1; --i) { // Fisher and Yates
+        const uint32_t j = random_below(&a->random, i);
+        const eye swap = places[i - 1];
+        places[i - 1] = places[j];
+        places[j] = swap;
+    }
+    if (s->is_map && a->places.count == 0) report_note(a->report, "%s: no point entity stands in air; the views are spread over the scene", s->path);
+    return RESULT_OK;
+}
+
+result auto_views_open(const scene *s, double aspect, const allocator *memory, report *r, auto_views *out)
+{
+    const cull_box box = s->zone.box;
+    *out = (auto_views){.scene = s,
+                        .memory = memory,
+                        .report = r,
+                        .low = {box.min.x, box.min.y, box.min.z},
+                        .high = {box.max.x, box.max.y, box.max.z},
+                        .aspect = aspect,
+                        .random = {SEED},
+                        .places = buffer_make(memory, sizeof(eye))};
+    for (uint32_t i = 0; i < s->item_count && !out->has_boxes; ++i) out->has_boxes = (s->items[i].flags & CULL_ITEM_BOX) != 0;
+    if (free_space_open(s, memory, &out->space) != RESULT_OK) return report_no_memory(r, s->path);
+    const result done = find_places(out);
+    if (done != RESULT_OK) auto_views_close(out);
+    return done;
+}
+
+void auto_views_close(auto_views *a)
+{
+    free_space_close(a->space);
+    buffer_free(&a->places);
+}
+
+// ---- Spread over the scene ----
+
+static double diagonal_of(const auto_views *a)
+{
+    const double x = a->high[0] - a->low[0], y = a->high[1] - a->low[1], z = a->high[2] - a->low[2];
+    return sqrt(x * x + y * y + z * z);
+}
+
+static int is_ground(const auto_views *a)
+{
+    const double height = a->high[1] - a->low[1];
+    return height > AUTO_EYE_HEIGHT_M && height < FLAT_SCENE * fmax(a->high[0] - a->low[0], a->high[2] - a->low[2]);
+}
+
+static int is_free(const auto_views *a, const double at[3])
+{
+    const double least = fmin(AUTO_CLEARANCE_M, MESH_CLEARANCE_PART * diagonal_of(a));
+    if (free_space_clearance(a->space, at, least, SPACE_ALL) < least) return 0;
+    return a->has_boxes || a->scene->is_map || !free_space_is_enclosed(a->space, at);
+}
+
+// Half of the eyes over ground stand on it (its lowest place: the scene's), the others anywhere up to its top.
+eye auto_spread_eye(auto_views *a, uint32_t i)
+{
+    eye e = {{0}};
+    for (int tries = 0; tries < SPREAD_TRIES; ++tries) {
+        for (int k = 0; k < 3; ++k) e.at[k] = random_between(&a->random, a->low[k], a->high[k]);
+        if (i % 2 == 0 && is_ground(a)) e.at[1] = a->low[1] + AUTO_EYE_HEIGHT_M;
+        if (is_free(a, e.at)) return e;
+    }
+    for (int k = 0; k < 3; ++k) e.at[k] = (a->low[k] + a->high[k]) / 2; // no room within: over it there is
+    e.at[1] = a->high[1] + fmax(AUTO_EYE_HEIGHT_M, diagonal_of(a) / 4);
+    return e;
+}
+
+// How far one may go from `at` along `way` within the bounds grown by `margin` of their size.
+static double way_out(const auto_views *a, const double at[3], const double way[3], double margin)
+{
+    double least = INFINITY;
+    for (int k = 0; k < 3; ++k) {
+        const double grown = margin * (a->high[k] - a->low[k]);
+        if (way[k] > 0) least = fmin(least, (a->high[k] + grown - at[k]) / way[k]);
+        if (way[k] < 0) least = fmin(least, (a->low[k] - grown - at[k]) / way[k]);
+    }
+    return isfinite(least) ? least : 0;
+}
+
+// From outside of a model: back from a place in its middle half, out of its bounds, within those half as large again.
+static int outside_camera(auto_views *a, double yaw, camera *out)
+{
+    for (int tries = 0; tries < SPREAD_TRIES; ++tries) {
+        const double pitch = random_pitch(&a->random);
+        double at[3], back[3];
+        direction_of(yaw, pitch, back);
+        for (int k = 0; k < 3; ++k) {
+            at[k] = random_between(&a->random, 0.75 * a->low[k] + 0.25 * a->high[k], 0.25 * a->low[k] + 0.75 * a->high[k]);
+            back[k] = -back[k];
+        }
+        const double way = random_between(&a->random, way_out(a, at, back, 0), way_out(a, at, back, 0.5));
+        for (int k = 0; k < 3; ++k) at[k] += way * back[k];
+        if ((is_ground(a) && at[1] < a->low[1] + AUTO_EYE_HEIGHT_M) || !is_free(a, at)) continue;
+        *out = auto_camera(a, at, yaw, pitch);
+        return 1;
+    }
+    return 0;
+}
+
+result auto_views_make(auto_views *a, uint32_t count, camera *cameras)
+{
+    const eye *places = a->places.items;
+    for (uint32_t i = 0; i < count; ++i) {
+        const double yaw = random_between(&a->random, -PI, PI);
+        const int is_outside = !a->scene->is_map && !a->has_boxes && i % 2 == 1;
+        if (is_outside && outside_camera(a, yaw, &cameras[i])) continue;
+        const eye e = a->places.count ? places[i % a->places.count] : auto_spread_eye(a, i / 2);
+        cameras[i] = auto_camera(a, e.at, yaw, random_pitch(&a->random));
+    }
+    return RESULT_OK;
+}

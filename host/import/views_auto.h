@@ -1,0 +1,39 @@
+// Automatic views: where an eye may stand, and the cameras made of such places. Between views_auto.c and views_walk.c.
+// SPDX-License-Identifier: MIT
+// Invariant: nothing but constants and the scene's own data enters, so the same scene gives the same views.
+#ifndef PORTCULLIS_HOST_VIEWS_AUTO_H
+#define PORTCULLIS_HOST_VIEWS_AUTO_H
+
+#include "views.h"
+#include "views_random.h"
+#include "views_space.h"
+
+#define AUTO_CLEARANCE_M 0.125 // 4 units: the near plane's corner at 16:9 is 0.1 m from the eye
+#define AUTO_NEAR_M 0.0625
+#define AUTO_EYE_HEIGHT_M 1.7
+#define AUTO_STEP_M 0.3 // of a walk, a frame
+
+typedef struct eye { double at[3]; } eye; // relative to the zone's origin
+
+typedef struct auto_views {
+    const scene *scene;
+    const allocator *memory;
+    report *report;
+    free_space *space;
+    double low[3], high[3]; // of everything
+    double aspect;
+    random_stream random;
+    buffer places; // eye: of point entities in air, shuffled
+    int has_boxes;
+} auto_views;
+
+result auto_views_open(const scene *s, double aspect, const allocator *memory, report *r, auto_views *out);
+void auto_views_close(auto_views *a);
+camera auto_camera(const auto_views *a, const double eye[3], double yaw, double pitch);
+// A place spread over the scene: number i of any count. Never fails: over the scene there is room.
+eye auto_spread_eye(auto_views *a, uint32_t i);
+
+result auto_views_make(auto_views *a, uint32_t count, camera *cameras);
+result auto_walk_make(auto_views *a, uint32_t count, camera *cameras);
+
+#endif

@@ -1,0 +1,10 @@
+# Turns text files into one C header of byte arrays: cmake -DOUT=file -DIN="a;b" -P embed.cmake
+set(text "// Made by embed.cmake from shaders/. Not for editing.\n")
+foreach(file IN LISTS IN)
+  get_filename_component(name ${file} NAME)
+  string(REPLACE "." "_" name ${name})
+  file(READ ${file} bytes HEX)
+  string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
+  string(APPEND text "static const char ${name}[] = {${bytes}0};\n")
+endforeach()
+file(WRITE ${OUT} "${text}")

@@ -1,0 +1,178 @@
+// Frames for people: what a chain handed back, drawn from its layout, a draw call for each call of renderer_draw.
+// SPDX-License-Identifier: MIT
+// Invariant: nothing here allocates; the tables were made with the layout.
+#include "gl.h"
+
+#include <assert.h>
+#include <string.h>
+
+static const float BACKGROUND[4] = {0.66f, 0.75f, 0.84f, 1}; // a hazy sky
+static const float TRANSLUCENT_ALPHA = 0.5f;
+
+uint32_t frame_variant(const renderer *g)
+{
+    const int by_fragment = g->frame.request.faces == FACES_FRONT && g->scene.has_two_sided;
+    return g->scene.variant | (by_fragment ? VARIANT_SIDES : 0);
+}
+
+void frame_state_pass(renderer *g, blend blend, depth_writes depth)
+{
+    const frame_request *q = &g->frame.request;
+    const int culled = q->faces == FACES_FRONT && !g->scene.has_two_sided;
+    const int added = q->mode == RENDER_OVERDRAW;
+    state_pass(g, &(pass_state){added ? GL_ALWAYS : GL_GREATER, added ? DEPTH_OFF : depth, COLOUR_ON, added ? BLEND_ADD : blend,
+                                culled && depth == DEPTH_ON ? BACK_CULLED : BACK_DRAWN});
+}
+
+void frame_uniforms(renderer *g, const draw_pass *p, GLuint program, uint32_t wanted)
+{
+    const double near_m = g->frame.request.camera->near_m;
+    const double far_m = 2 * scene_radius_m(g->scene.scene) + near_m * 2;
+    viewpoint_set(p->view, program, wanted);
+    glProgramUniform1f(program, AT_ALPHA, wanted ? TRANSLUCENT_ALPHA : 1);
+    if (g->frame.request.mode == RENDER_DEPTH) glProgramUniform2f(program, AT_DEPTH_RANGE, (float)near_m, (float)far_m);
+    if (!(p->variant & VARIANT_CLIP)) return;
+    GLfloat planes[4][4];
+    for (uint32_t i = 0; i < 4; ++i) {
+        const cull_plane none = {{0, 0, 0}, 1}; // everything is inside
+        const cull_plane c = i < p->plane_count ? p->planes[i] : none;
+        planes[i][0] = c.normal.x;
+        planes[i][1] = c.normal.y;
+        planes[i][2] = c.normal.z;
+        planes[i][3] = c.offset;
+    }
+    glProgramUniform4fv(program, AT_CLIP_PLANES, 4, planes[0]);
+}
+
+void frame_bind(renderer *g)
+{
+    const target *t = g->frame.request.mode == RENDER_OVERDRAW ? g->frame.layers : g->frame.target;
+    state_framebuffer(g, t->framebuffer, t->width_px, t->height_px);
+}
+
+static void bind_blocks(renderer *g)
+{
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_MATERIALS, g->scene.materials);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_TWO_SIDED, g->scene.two_sided);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_ITEMS, g->scene.triangle_items);
+}
+
+static void clear(renderer *g)
+{
+    const GLfloat far = 0, none[4] = {0};
+    state_pass(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, BACK_DRAWN});
+    glClearBufferfv(GL_COLOR, 0, g->frame.request.mode == RENDER_SHADED ? BACKGROUND : none);
+    glClearBufferfv(GL_DEPTH, 0, &far);
+}
+
+result renderer_begin(renderer *g, const frame_request *q, report *r)
+{
+    if (!g->scene.scene) return report_error(r, NULL, 0, "a frame without a scene; upload one first");
+    frame_state *f = &g->frame;
+    const viewpoint_request from = {.camera = q->camera, .width_px = q->width_px, .height_px = q->height_px};
+    const result seen = viewpoint_make(g, &from, r, &f->view);
+    if (seen != RESULT_OK) return seen;
+    f->layers = NULL;
+    f->target = target_find(g, TARGET_COLOUR, q->width_px, q->height_px, r);
+    if (f->target && q->mode == RENDER_OVERDRAW) f->layers = target_find(g, TARGET_LAYERS, q->width_px, q->height_px, r);
+    if (!f->target || (q->mode == RENDER_OVERDRAW && !f->layers)) return RESULT_NO_GL;
+    f->request = *q;
+    f->draw_calls = f->state_changes = f->translucent_count = 0;
+    f->open = 1;
+    bind_blocks(g);
+    frame_bind(g);
+    clear(g);
+    return gl_check(g, r, "beginning a frame");
+}
+
+static void add_run(renderer *g, const render_layout *l, cull_run run)
+{
+    assert(run.count >= 1 && run.count <= l->total && run.first <= l->total - run.count);
+    const uint32_t first = l->first_index[run.first], end = l->first_index[run.first + run.count];
+    ranges *a = &g->scene.ranges;
+    if (ranges_add(a, first, end - first)) return;
+    ranges_draw(g, a); // more runs than items: someone repeats himself
+    ranges_add(a, first, end - first);
+}
+
+void frame_draw_runs(renderer *g, const draw_pass *p, const render_layout *l, const cull_run *runs, uint32_t run_count)
+{
+    const program_kind kind = PROGRAM_SHADED + (program_kind)g->frame.request.mode;
+    const GLuint program = program_find(g, kind, frame_variant(g) | p->variant);
+    if (!program) return;
+    state_program(g, program);
+    state_vertices(g, l->vertices);
+    frame_uniforms(g, p, program, 0);
+    frame_state_pass(g, BLEND_NONE, DEPTH_ON);
+    for (uint32_t i = 0; i < run_count; ++i) add_run(g, l, runs[i]);
+    ranges_draw(g, &g->scene.ranges);
+}
+
+void renderer_draw(renderer *g, const render_layout *l, const cull_run *runs, uint32_t run_count)
+{
+    assert(g->frame.open);
+    if (run_count == 0) return;
+    g->frame.last_layout = l;
+    frame_draw_runs(g, &(draw_pass){.view = &g->frame.view}, l, runs, run_count);
+    translucent_note(g, l, runs, run_count);
+    gl_check(g, NULL, "drawing");
+}
+
+// Layers counted to colours.
+static void draw_heat(renderer *g)
+{
+    const GLuint program = program_find(g, PROGRAM_HEAT, 0);
+    if (!program) return;
+    const target *t = g->frame.target;
+    state_framebuffer(g, t->framebuffer, t->width_px, t->height_px);
+    state_program(g, program);
+    state_vertices(g, g->scene.vertices); // a core context draws nothing without one
+    state_pass(g, &(pass_state){GL_ALWAYS, DEPTH_OFF, COLOUR_ON, BLEND_NONE, BACK_DRAWN});
+    glBindTextureUnit(0, g->frame.layers->colour);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    g->frame.draw_calls++;
+}
+
+void renderer_end(renderer *g)
+{
+    assert(g->frame.open);
+    translucent_draw(g);
+    if (g->frame.request.mode == RENDER_OVERDRAW) draw_heat(g);
+    g->frame.open = 0;
+    glFinish();
+    gl_check(g, NULL, "ending a frame");
+}
+
+uint32_t renderer_draw_calls(const renderer *g)
+{
+    return g->frame.draw_calls;
+}
+
+uint32_t renderer_state_changes(const renderer *g)
+{
+    return g->frame.state_changes;
+}
+
+static void flip_rows(uint8_t *rgba, uint32_t width_px, uint32_t height_px)
+{
+    const size_t row = (size_t)width_px * 4;
+    for (uint32_t y = 0; y < height_px / 2; ++y) {
+        uint8_t *a = rgba + y * row, *b = rgba + (height_px - 1 - y) * row;
+        for (size_t i = 0; i < row; ++i) {
+            const uint8_t kept = a[i];
+            a[i] = b[i];
+            b[i] = kept;
+        }
+    }
+}
+
+result renderer_read(renderer *g, uint8_t *rgba, report *r)
+{
+    const target *t = g->frame.target;
+    if (!t || g->frame.open) return report_error(r, NULL, 0, "a picture read before renderer_end; end the frame first");
+    state_framebuffer(g, t->framebuffer, t->width_px, t->height_px);
+    glReadPixels(0, 0, (GLsizei)t->width_px, (GLsizei)t->height_px, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+    flip_rows(rgba, t->width_px, t->height_px);
+    for (size_t i = 0; i < (size_t)t->width_px * t->height_px; ++i) rgba[4 * i + 3] = 255;
+    return gl_check(g, r, "reading a picture");
+}

@@ -1,0 +1,308 @@
+// What the renderer's files share. Everything of GL hangs off `renderer`; no file keeps state of its own.
+// SPDX-License-Identifier: MIT
+#ifndef PORTCULLIS_RENDER_GL_H
+#define PORTCULLIS_RENDER_GL_H
+
+#include "render.h"
+
+#include <epoxy/gl.h>
+
+#include <epoxy/egl.h>
+
+
+
+// ---- Programs (program.c) ----
+
+typedef enum program_kind {
+    PROGRAM_ID,
+    PROGRAM_SEE_THROUGH,
+    PROGRAM_SHADED, // from here five in the order of render_mode
+    PROGRAM_ITEMS,
+    PROGRAM_ZONES,
+    PROGRAM_DEPTH,
+    PROGRAM_OVERDRAW,
+    PROGRAM_BOXES,
+    PROGRAM_PICTURE,
+    PROGRAM_HEAT,
+    PROGRAM_KINDS
+} program_kind;
+
+enum { // what a program must know of the scene or the pass; compiled in, on first use
+    VARIANT_CUT_OUT = 1u << 0,
+    VARIANT_TRANSLUCENT = 1u << 1,
+    VARIANT_SIDES = 1u << 2, // back faces of one-sided triangles dropped per fragment
+    VARIANT_CLIP = 1u << 3,  // by up to four planes
+    VARIANT_KEEP_DEPTH = 1u << 4,
+    VARIANTS = 1u << 5
+};
+
+enum { // vertex words: material below, then
+    WORD_TRANSLUCENT = 1u << 16,
+    WORD_CUT_OUT = 1u << 17,
+    WORD_SKY = 1u << 18,
+};
+
+enum { // storage buffer bindings
+    BIND_COUNTS = 0,
+    BIND_MATERIALS = 1,
+    BIND_TWO_SIDED = 2,
+    BIND_ITEMS = 3,
+};
+
+enum { // uniform locations of scene.vert and frame.frag
+    AT_CLIP_FROM_EYE = 0,
+    AT_EYE_HIGH = 1,
+    AT_EYE_LOW = 2,
+    AT_WANTED = 3,
+    AT_CLIP_PLANES = 4,
+    AT_ALPHA = 8,
+    AT_DEPTH_RANGE = 9,
+};
+
+// 0 and a counted, reported error when the driver refuses it.
+GLuint program_find(renderer *g, program_kind kind, uint32_t variant);
+void programs_close(renderer *g);
+
+// ---- State, set only where it changes, and counted (state.c) ----
+
+typedef enum blend { BLEND_NONE, BLEND_MIX, BLEND_ADD } blend;
+typedef enum colour_writes { COLOUR_ON, COLOUR_OFF } colour_writes;
+typedef enum depth_writes { DEPTH_ON, DEPTH_OFF } depth_writes;
+typedef enum back_faces { BACK_DRAWN, BACK_CULLED } back_faces;
+
+typedef struct gl_state {
+    GLuint program, vertices, framebuffer;
+    uint32_t width_px, height_px;
+    GLenum depth_test; // GL_ALWAYS: no test at all
+    depth_writes depth;
+    colour_writes colour;
+    blend blend;
+    back_faces back;
+    uint32_t known; // 0: nothing of it is set yet
+} gl_state;
+
+void state_forget(renderer *g); // the next calls set all
+void state_program(renderer *g, GLuint program);
+void state_vertices(renderer *g, GLuint vertex_array);
+void state_framebuffer(renderer *g, GLuint framebuffer, uint32_t width_px, uint32_t height_px);
+typedef struct pass_state {
+    GLenum depth_test;
+    depth_writes depth;
+    colour_writes colour;
+    blend blend;
+    back_faces back;
+} pass_state;
+void state_pass(renderer *g, const pass_state *p);
+
+// ---- Targets (target.c) ----
+
+typedef enum target_kind { TARGET_ID, TARGET_COLOUR, TARGET_LAYERS } target_kind;
+typedef struct target {
+    GLuint framebuffer, colour, depth;
+    uint32_t width_px, height_px;
+    target_kind kind;
+    uint64_t used; // 0: empty place
+} target;
+enum { TARGETS = 4 };
+
+// The target of that kind and size; stays valid while at most TARGETS are in use. NULL: reported.
+target *target_find(renderer *g, target_kind kind, uint32_t width_px, uint32_t height_px, report *r);
+void targets_close(renderer *g);
+
+// ---- Index ranges for one multi-draw (ranges.c) ----
+
+typedef struct ranges {
+    GLsizei *counts;
+    const void **offsets; // bytes
+    uint32_t count, capacity;
+    uint32_t end; // index behind the last range
+} ranges;
+
+result ranges_open(ranges *a, uint32_t capacity, const allocator *memory);
+void ranges_close(ranges *a, const allocator *memory);
+// Joined to the last when it follows it. 0: full, nothing changed.
+int ranges_add(ranges *a, uint32_t first_index, uint32_t index_count);
+void ranges_draw(renderer *g, ranges *a); // one draw call, then empty
+
+// ---- The scene on the GPU (upload.c) ----
+
+typedef struct scene_gpu {
+    const scene *scene; // NULL: none
+    GLuint vertices;    // vertex array, with the index buffer in the scene's order
+    GLuint positions, words, triangles, texcoords, normals, elements;
+    GLuint materials, two_sided, triangle_items, seen;
+    uint32_t *indices;         // each triangle turned so that its last vertex is its own
+    uint32_t *see_through;     // items with translucent triangles, ascending
+    uint8_t *is_see_through;   // per item
+    uint32_t see_through_count;
+    uint32_t triangle_count, item_total; // movers too
+    uint32_t variant;          // VARIANT_CUT_OUT, VARIANT_TRANSLUCENT as the scene needs
+    uint32_t has_two_sided;    // an opaque triangle of a two-sided item
+    uint32_t *box_items;       // item_total: scratch of the floor
+    uint32_t *box_counts;      // item_total: scratch of the floor
+    GLuint counts;             // of the floor, item_total words
+    ranges ranges;
+} scene_gpu;
+
+void scene_release(renderer *g);
+// A vertex array over the scene's vertices and the given index buffer.
+GLuint scene_vertex_array(const renderer *g, GLuint elements);
+
+// ---- Where it is seen from (viewpoint.c) ----
+
+typedef struct viewpoint {
+    double clip_from_eye[16], eye[3]; // column major; relative to the zone's origin
+    double near_m, pixels_per_tangent;
+    float clip[16], eye_high[3], eye_low[3];
+} viewpoint;
+
+typedef struct viewpoint_request {
+    const camera *camera;
+    uint32_t width_px, height_px;
+    double jitter_px[2];
+} viewpoint_request;
+
+result viewpoint_make(const renderer *g, const viewpoint_request *q, report *r, viewpoint *out);
+void viewpoint_set(const viewpoint *v, GLuint program, uint32_t wanted);
+void viewpoint_finish(viewpoint *v); // floats from the doubles
+
+// ---- Boxes against the depth (boxes.c) ----
+
+typedef enum box_fate { BOX_OUTSIDE, BOX_NEAR, BOX_TESTED } box_fate;
+typedef struct eye_box { float low[3], high[3]; } eye_box; // relative to the eye, widened
+
+box_fate box_place(const viewpoint *v, const cull_box *box, eye_box *out);
+
+enum { BOX_CHUNK = 2048 };
+typedef struct box_pass {
+    GLuint vertices, corners, elements;
+    float *staged; // BOX_CHUNK boxes of 8 corners
+    uint32_t staged_count, first_slot;
+    const viewpoint *view;
+    GLuint program;
+    uint32_t draw_calls;
+} box_pass;
+
+result boxes_open(renderer *g, report *r);
+void boxes_close(renderer *g);
+// Between begin and end: box number n since begin counts its fragments in word first_slot + n of `counts`, against the
+// depth of the framebuffer that is bound.
+void boxes_begin(renderer *g, const viewpoint *v, GLuint counts);
+void boxes_add(renderer *g, const eye_box *box);
+void boxes_end(renderer *g);
+
+// ---- Box tests in flight (box_tests.c) ----
+
+typedef struct test_batch {
+    GLuint counts;
+    GLsync fence; // NULL: nothing was drawn
+    uint32_t *tags, *slots; // slots: word of `counts`, or SLOT_HIDDEN, SLOT_SEEN
+    uint32_t *pixels;       // read back
+    uint32_t capacity, count, tested, taken, frame, is_read;
+    uint64_t asked; // number of the last collect before it
+} test_batch;
+
+typedef struct test_queue {
+    test_batch *batches; // a ring; places keep their buffers
+    uint32_t capacity, first, count;
+    uint64_t collects;
+    uint32_t latency;   // in calls of renderer_collect
+    uint32_t by_driver; // 1: ready when the fences say so, whatever the latency
+} test_queue;
+
+void tests_close(renderer *g);
+
+// ---- Frames (frame.c, translucent.c) ----
+
+typedef struct translucent_item {
+    double distance2;
+    const render_layout *layout;
+    uint32_t place;
+} translucent_item;
+
+typedef struct frame_state {
+    viewpoint view;
+    target *target;    // colours, in the end
+    target *layers;    // RENDER_OVERDRAW
+    frame_request request;
+    const render_layout *last_layout;
+    translucent_item *translucent; // see_through_count places
+    uint32_t translucent_count, translucent_capacity;
+    uint32_t draw_calls, state_changes;
+    uint32_t open; // between begin and end
+} frame_state;
+
+// A pass over runs, for frames and captures.
+typedef struct draw_pass {
+    const viewpoint *view;
+    uint32_t variant; // more than the scene's
+    const cull_plane *planes;
+    uint32_t plane_count;
+} draw_pass;
+
+void frame_draw_runs(renderer *g, const draw_pass *p, const render_layout *l, const cull_run *runs, uint32_t run_count);
+void frame_bind(renderer *g); // the frame's framebuffer
+void frame_uniforms(renderer *g, const draw_pass *p, GLuint program, uint32_t wanted);
+uint32_t frame_variant(const renderer *g);
+void frame_state_pass(renderer *g, blend blend, depth_writes depth);
+void translucent_note(renderer *g, const render_layout *l, const cull_run *runs, uint32_t run_count);
+void translucent_draw(renderer *g);
+
+struct render_layout {
+    renderer *g;
+    GLuint vertices, elements; // elements 0: the scene's own
+    uint32_t *order;           // NULL: as the scene stands
+    uint32_t *first_index;     // of each place, movers behind; one more at the end
+    uint32_t *see_through;     // places before this one that are; NULL: none is
+    uint32_t total;            // places, movers too
+};
+
+// ---- Pictures (capture.c) ----
+
+typedef struct picture_slot {
+    GLuint framebuffer, colour, depth;
+    uint32_t width_px, height_px, keep_depth, filled;
+    double corner[3], right[3], up[3], eye[3]; // relative to the zone's origin
+    double near_fraction; // distance of depth 1, in units of the parallelogram's
+    const render_layout *layout;
+} picture_slot;
+
+enum { SLOT_PAGE = 64, SLOT_PAGES = 65536 / SLOT_PAGE };
+typedef struct slot_store {
+    picture_slot *pages[SLOT_PAGES];
+    GLuint vertices; // of a draw without attributes
+    GLuint spare_depth; // for captures that keep none
+    uint32_t spare_width_px, spare_height_px;
+} slot_store;
+
+void pictures_close(renderer *g);
+void pictures_forget_layout(renderer *g, const render_layout *l);
+
+// ---- The whole ----
+
+struct renderer {
+    const allocator *memory;
+    report sink; // a copy of what renderer_open got: for calls that take none
+    EGLDisplay display;
+    EGLContext context;
+    struct GLFWwindow *window;
+    char name[192];
+    uint32_t errors;
+    uint32_t has_debug; // errors come through the callback; glGetError only clears them
+    uint32_t size_most_px;
+    uint64_t clock; // of target use
+    GLuint programs[PROGRAM_KINDS][VARIANTS];
+    gl_state state;
+    target targets[TARGETS];
+    scene_gpu scene;
+    box_pass boxes;
+    test_queue tests;
+    frame_state frame;
+    slot_store pictures;
+    target *id_target; // of the last id picture, while its depth is there
+};
+
+// Clears GL's error flags; each is counted and reported with what was being done. RESULT_NO_GL when there was one.
+result gl_check(renderer *g, report *r, const char *doing);
+
+#endif

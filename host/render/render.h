@@ -1,0 +1,103 @@
+// The renderer: OpenGL 4.5 core, headless by EGL or in a GLFW window. Camera-relative, reversed z, one vertex buffer.
+// SPDX-License-Identifier: MIT
+// Invariant: a picture of triangles depends on camera, size and the set of triangles, never on the order of a culler.
+#ifndef PORTCULLIS_HOST_RENDER_H
+#define PORTCULLIS_HOST_RENDER_H
+
+#include "../core/scene.h"
+#include "../core/view.h"
+
+typedef struct renderer renderer;
+
+typedef enum renderer_target { RENDERER_HEADLESS, RENDERER_WINDOW } renderer_target;
+
+typedef struct renderer_options {
+    renderer_target target;
+    uint32_t width_px, height_px; // of the window; headless pictures say theirs with each call
+    const char *title;
+} renderer_options;
+
+// [main, and all below] One context, current on the calling thread. RESULT_NO_GL with a line when there is none.
+result renderer_open(const renderer_options *o, const allocator *memory, report *r, renderer **out);
+void renderer_close(renderer *g); // NULL is fine
+const char *renderer_name(const renderer *g);  // GL_RENDERER and version, one line
+uint32_t renderer_errors(const renderer *g);   // GL errors seen so far (debug callback, checks); each was reported
+result renderer_upload(renderer *g, const scene *s, report *r); // one scene at a time, borrowed until the next or close
+
+// ---- Truth: ascending global id, one program, one vertex buffer ----
+
+typedef struct id_picture {
+    uint32_t width_px, height_px;
+    uint32_t *triangles;        // width * height, bottom row first: global triangle + 1, 0: nothing
+    uint32_t *see_through;      // per global triangle a bit: a fragment of this translucent triangle passes the opaque depth
+    uint32_t see_through_words; // length of see_through
+} id_picture;
+
+result id_picture_open(const scene *s, uint32_t width_px, uint32_t height_px, const allocator *memory, id_picture *out);
+void id_picture_free(id_picture *p, const allocator *memory);
+
+typedef enum faces { FACES_ALL, FACES_FRONT } faces; // FRONT drops back faces of items that are not two-sided
+
+typedef struct id_request {
+    const camera *camera;
+    const uint32_t *item_bits; // global ids (movers too) to draw, NULL: all
+    double jitter_px[2];       // sub-pixel shift of the picture, right and up
+    faces faces;
+} id_request;
+
+// Draws and reads back. size: that of `out`. RESULT_NO_GL when the driver fails (a line was reported).
+result renderer_id_picture(renderer *g, const id_request *q, report *r, id_picture *out);
+// Right after renderer_id_picture, against its depth: bit i of item_bits is set where the widened box of item i (movers
+// too) passes anywhere, or reaches the near plane. item_bits holds (item_count + mover_count + 31) / 32 words.
+result renderer_floor(renderer *g, const camera *c, report *r, uint32_t *item_bits);
+
+// ---- A frame drawn from visible sets ----
+
+// A chain's layout: index buffer in that order. order NULL: as the scene stands. order has scene.item_count places.
+typedef struct render_layout render_layout;
+result render_layout_open(renderer *g, const uint32_t *order, report *r, render_layout **out);
+void render_layout_close(render_layout *l); // NULL is fine; before the renderer
+
+typedef enum render_mode { RENDER_SHADED, RENDER_ITEMS, RENDER_ZONES, RENDER_DEPTH, RENDER_OVERDRAW } render_mode;
+
+typedef struct frame_request {
+    const camera *camera;
+    uint32_t width_px, height_px;
+    render_mode mode;
+    faces faces;
+} frame_request;
+
+result renderer_begin(renderer *g, const frame_request *q, report *r); // target, clear
+// Runs of places in the layout's order, and of movers (item_count + slot). Opaque at once, translucent at renderer_end.
+void renderer_draw(renderer *g, const render_layout *l, const cull_run *runs, uint32_t run_count);
+void renderer_end(renderer *g);    // translucent items of all runs drawn, then glFinish
+uint32_t renderer_draw_calls(const renderer *g);   // since renderer_begin
+uint32_t renderer_state_changes(const renderer *g);
+result renderer_read(renderer *g, uint8_t *rgba, report *r); // width * height * 4, top row first, after renderer_end
+
+// ---- What cullers ask for ----
+
+// Inside a frame. Issues box tests against the depth drawn so far; the boxes are the plugin's, widened here. At the near plane: seen.
+void renderer_test(renderer *g, const cull_test *tests, uint32_t count, uint32_t frame);
+typedef enum collect { COLLECT_READY, COLLECT_ALL } collect; // ALL waits
+// Takes answered tests out, oldest first, at most `capacity`. *stalled is set to 1 when it had to wait. age is now - asked.
+uint32_t renderer_collect(renderer *g, collect how, uint32_t frame, cull_answer *answers, uint32_t capacity, uint32_t *stalled);
+void renderer_forget_tests(renderer *g);
+// From then on answers are ready by count, whatever the driver's clock does: a test is readable in the first call of
+// renderer_collect, plus `steps` (bench --query-latency). Never called: when the driver says so, for a viewer.
+void renderer_query_latency(renderer *g, uint32_t steps);
+void renderer_capture(renderer *g, const render_layout *l, const cull_capture *capture); // slot < 65,536
+void renderer_show(renderer *g, const cull_picture *picture);
+void renderer_forget_pictures(renderer *g);
+
+// ---- Pictures to files ----
+
+result png_write(const char *path, const uint8_t *rgba, uint32_t width_px, uint32_t height_px, report *r);
+
+// The window, for the viewer.
+int renderer_window_is_open(renderer *g); // polls events
+struct GLFWwindow;
+struct GLFWwindow *renderer_window(renderer *g); // for input; NULL when headless
+void renderer_present(renderer *g);       // the frame's colours to the window
+
+#endif

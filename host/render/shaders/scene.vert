@@ -1,0 +1,55 @@
+// Every triangle of the scene, whatever the picture: camera-relative position, reversed z.
+// Invariant: the same vertex gives the same bits in every program and every draw.
+layout(location = 0) in vec3 position;  // relative to the zone's origin
+layout(location = 1) in uint word;      // material in the low 16 bits, flags above
+layout(location = 2) in uint triangle;  // global number of the triangle that this vertex is the last of
+layout(location = 0) uniform mat4 clip_from_eye;
+layout(location = 1) uniform vec3 eye_high; // the eye relative to the zone's origin: float part ...
+layout(location = 2) uniform vec3 eye_low;  // ... and what float could not hold
+layout(location = 3) uniform uint wanted;   // 0 or WORD_TRANSLUCENT: which triangles this pass draws
+layout(location = 4) uniform vec4 clip_planes[4];
+invariant gl_Position;
+
+flat out uint v_triangle;
+#ifdef CUT_OUT
+layout(location = 3) in vec2 texcoord;
+out vec2 v_texcoord;
+#endif
+#if defined(CUT_OUT) || defined(SHADED)
+flat out uint v_word;
+#endif
+#ifdef SHADED
+layout(location = 4) in vec4 normal;
+out vec3 v_normal;
+#endif
+#ifdef EYE_POSITION
+out vec3 v_eye;
+#endif
+#ifdef CLIP
+out float gl_ClipDistance[4];
+#endif
+
+void main()
+{
+    precise vec3 from_eye = (position - eye_high) - eye_low;
+    gl_Position = clip_from_eye * vec4(from_eye, 1.0);
+#ifdef TRANSLUCENT
+    if ((word & WORD_TRANSLUCENT) != wanted) gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside: the whole triangle goes
+#endif
+    v_triangle = triangle;
+#ifdef CUT_OUT
+    v_texcoord = texcoord;
+#endif
+#if defined(CUT_OUT) || defined(SHADED)
+    v_word = word;
+#endif
+#ifdef SHADED
+    v_normal = normal.xyz;
+#endif
+#ifdef EYE_POSITION
+    v_eye = from_eye;
+#endif
+#ifdef CLIP
+    for (int i = 0; i < 4; ++i) gl_ClipDistance[i] = dot(clip_planes[i].xyz, position) + clip_planes[i].w;
+#endif
+}

@@ -1,0 +1,85 @@
+// GL state, set only where it changes, each change counted.
+// SPDX-License-Identifier: MIT
+#include "gl.h"
+
+void state_forget(renderer *g)
+{
+    g->state = (gl_state){0};
+}
+
+void state_program(renderer *g, GLuint program)
+{
+    if (g->state.program == program && program) return;
+    glUseProgram(program);
+    g->state.program = program;
+    g->frame.state_changes++;
+}
+
+void state_vertices(renderer *g, GLuint vertex_array)
+{
+    if (g->state.vertices == vertex_array && vertex_array) return;
+    glBindVertexArray(vertex_array);
+    g->state.vertices = vertex_array;
+    g->frame.state_changes++;
+}
+
+void state_framebuffer(renderer *g, GLuint framebuffer, uint32_t width_px, uint32_t height_px)
+{
+    gl_state *s = &g->state;
+    if (s->framebuffer == framebuffer && framebuffer && s->width_px == width_px && s->height_px == height_px) return;
+    glBindFramebuffer(GL_FRAMEBUFFER, framebuffer);
+    glViewport(0, 0, (GLsizei)width_px, (GLsizei)height_px);
+    s->framebuffer = framebuffer;
+    s->width_px = width_px;
+    s->height_px = height_px;
+    g->frame.state_changes++;
+}
+
+static void set_enabled(GLenum what, int on)
+{
+    if (on) glEnable(what);
+    else glDisable(what);
+}
+
+static void set_blend(blend how)
+{
+    set_enabled(GL_BLEND, how != BLEND_NONE);
+    if (how == BLEND_MIX) glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    if (how == BLEND_ADD) glBlendFunc(GL_ONE, GL_ONE);
+}
+
+void state_pass(renderer *g, const pass_state *p)
+{
+    gl_state *s = &g->state;
+    const uint32_t all = !s->known;
+    uint32_t changes = 0;
+    if (all || s->depth_test != p->depth_test) {
+        set_enabled(GL_DEPTH_TEST, p->depth_test != GL_ALWAYS);
+        if (p->depth_test != GL_ALWAYS) glDepthFunc(p->depth_test);
+        changes++;
+    }
+    if (all || s->depth != p->depth) {
+        glDepthMask(p->depth == DEPTH_ON);
+        changes++;
+    }
+    if (all || s->colour != p->colour) {
+        const GLboolean on = p->colour == COLOUR_ON;
+        glColorMask(on, on, on, on);
+        changes++;
+    }
+    if (all || s->blend != p->blend) {
+        set_blend(p->blend);
+        changes++;
+    }
+    if (all || s->back != p->back) {
+        set_enabled(GL_CULL_FACE, p->back == BACK_CULLED);
+        changes++;
+    }
+    s->depth_test = p->depth_test;
+    s->depth = p->depth;
+    s->colour = p->colour;
+    s->blend = p->blend;
+    s->back = p->back;
+    s->known = 1;
+    g->frame.state_changes += changes;
+}

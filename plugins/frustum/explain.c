@@ -1,0 +1,61 @@
+// Why an item is kept or dropped: see explain.h.
+// SPDX-License-Identifier: MIT
+#include "explain.h"
+
+#include <portcullis/plane.h>
+
+#include <stdio.h>
+
+static cull_box item_box(const frustum_index *index, uint32_t place)
+{
+    const float *b = index->levels[0] + (size_t)(place / INDEX_WIDTH) * INDEX_BOX_FLOATS + place % INDEX_WIDTH;
+    const cull_box box = {{b[0], b[16], b[32]}, {b[48], b[64], b[80]}};
+    return box;
+}
+
+static int shows_only_its_back(const frustum_index *index, const cull_view *view, uint32_t place)
+{
+    if (!index->faces) return 0;
+    const float *f = index->faces + (size_t)(place / INDEX_WIDTH) * INDEX_FACE_FLOATS + place % INDEX_WIDTH;
+    float reach = 0;
+    for (int i = 0; i < 3; i++) reach = fmaxf(reach, fabsf(view->eye[i]));
+    const float height = (f[0] * view->eye[0] + f[16] * view->eye[1]) + f[32] * view->eye[2];
+    return height + (f[48] * view->eye[3] + f[64] * reach) < 0;
+}
+
+size_t explain_item(const frustum_index *index, const cull_visit *visit, uint32_t item, char *text, size_t size)
+{
+    int length = 0;
+    if (item >= index->item_count) {
+        length = snprintf(text, size, "there is no item %u", (unsigned)item);
+        return length < 0 ? 0 : (size_t)length;
+    }
+    const cull_box box = item_box(index, item);
+    float nearest = -INFINITY; // of the volumes, how deep the box is outside of the one that comes nearest to keeping it
+    uint32_t volume = 0, plane = 0;
+    for (uint32_t v = 0; v < visit->volume_count; v++) {
+        float worst = INFINITY;
+        uint32_t at = 0;
+        for (uint32_t k = 0; k < visit->volumes[v].plane_count; k++) {
+            const cull_plane p = visit->volumes[v].planes[k];
+            const float height = cull_plane_height(p, cull_box_corner(box, p.normal));
+            if (height < worst) {
+                worst = height;
+                at = k;
+            }
+        }
+        if (worst > nearest) {
+            nearest = worst;
+            volume = v;
+            plane = at;
+        }
+    }
+    if (!(nearest >= 0))
+        length = snprintf(text, size, "dropped: its box lies %g m outside plane %u of volume %u, and outside every other volume",
+                          (double)-nearest, (unsigned)plane, (unsigned)volume);
+    else if (shows_only_its_back(index, visit->view, item))
+        length = snprintf(text, size, "dropped: the wall shows only its back to the eye (backface=1)");
+    else
+        length = snprintf(text, size, "kept: no plane of volume %u has its box outside", (unsigned)volume);
+    return length < 0 ? 0 : (size_t)length;
+}

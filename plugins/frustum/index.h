@@ -1,0 +1,40 @@
+// The built index: item boxes in blocks of 16 in leaf order, and on top of them the boxes of blocks, 16 to a block again.
+// SPDX-License-Identifier: MIT
+// Invariant: block b of a level holds the boxes of the blocks 16 b .. 16 b + 15 of the level below, so the tree has no
+// pointers, and the items below any node are one run.
+#ifndef FRUSTUM_INDEX_H
+#define FRUSTUM_INDEX_H
+
+#include <portcullis/culler.h>
+
+enum {
+    INDEX_WIDTH = 16,       // boxes in a block: a vector of AVX-512
+    INDEX_SHIFT = 4,        // log2 of it
+    INDEX_MAX_LEVELS = 8,   // 16^8 = 2^32 items
+    INDEX_BOX_FLOATS = 96,  // a block: 16 each of min x, min y, min z, max x, max y, max z; six cache lines
+    INDEX_FACE_FLOATS = 80, // a block: 16 each of normal x, y, z, offset, doubt
+};
+
+typedef struct frustum_index {
+    uint32_t item_count, level_count;             // at least one level
+    const float *levels[INDEX_MAX_LEVELS];        // [0]: item boxes
+    uint32_t entry_counts[INDEX_MAX_LEVELS];      // boxes in a level; the rest of its last block is never visible
+    uint32_t *order;                              // order[place] = item
+    float *faces;                                 // blocks of INDEX_FACE_FLOATS, one a place; NULL: back faces are kept
+    float *boxes;                                 // all levels
+    size_t order_bytes, face_bytes, box_bytes;
+} frustum_index;
+
+typedef enum index_faces { INDEX_NO_FACES, INDEX_FACES } index_faces;
+
+// [build] On failure nothing is left behind. index_free also after a failed build; a zeroed index is fine.
+cull_result index_build(const cull_host *host, const cull_zone *zone, index_faces faces, frustum_index *out);
+void index_free(const cull_host *host, frustum_index *index);
+
+// Writes a permutation of the items such that every 16^k places that start at a multiple of 16^k lie close together.
+cull_result index_order(const cull_host *host, const cull_zone *zone, uint32_t *order);
+
+// One block of faces for the items order[0 .. count-1], count <= 16.
+void index_faces_fill(const cull_zone *zone, const uint32_t *order, uint32_t count, float *faces);
+
+#endif

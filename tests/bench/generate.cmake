@@ -1,0 +1,4 @@
+# Generated scenes, judged by a reader of their own and by the importers.
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+portcullis_test(generate SOURCES test_generate.c obj_probe.c LIBS bench_generate host_import PkgConfig::XXHASH)
