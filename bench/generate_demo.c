@@ -1,6 +1,7 @@
 // demo: the project's own scene and the walk through it: six rooms of a museum, out of the door, along the street, up.
 // SPDX-License-Identifier: MIT
-// Materials carry a number in their names: importers make a colour from a name, and the colours of these suit the things.
+// Importers make a colour from a material's name: from a word like brick, else from its hash, and then a number in the
+// name chooses one that suits.
 #include "generate_demo.h"
 
 #include "generate_kinds.h"

@@ -69,7 +69,7 @@ void model_figure(obj_writer *w, spot foot, double height, double turn)
                                            {.035, .993}, {0, 1}};
     const turned s = {.points = points, .count = COUNT_OF(points), .scale = height, .folds = 11, .fold_depth = .13, .fade = 1, .twist = .05,
                       .turn = turn, .flatness = .72};
-    turned_write(w, &s, foot, 44, 2);
+    turned_write(w, &s, foot, 40, 2);
 }
 
 void model_vase(obj_writer *w, spot foot, double height, uint32_t kind)
@@ -126,9 +126,9 @@ void model_tree(obj_writer *w, spot foot, double height, random_stream *r)
     static const profile_point points[] = {{0, 0}, {.05, 0}, {.032, .06}, {.025, .3}, {.018, .6}, {0, .75}};
     const turned trunk = {.points = points, .count = COUNT_OF(points), .scale = height, .folds = 3, .fold_depth = .1, .twist = .1,
                           .turn = random_unit(r)};
-    obj_material(w, "bark_26");
+    obj_material(w, "bark_wood");
     turned_write(w, &trunk, foot, 9, 1);
-    obj_material(w, "leaves_25");
+    obj_material(w, "leaves");
     const double turn = random_unit(r);
     for (int i = 0; i < 3; ++i) {
         const double angle = turn + i / 3.0, off = height * 0.13;

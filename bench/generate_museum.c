@@ -26,21 +26,21 @@ typedef struct museum_room {
 
 static const museum_room rooms[] = {
     {"figures", -146, -216, -52, -112,
-     {{SIDE_MIN_Z, -130, -110, 9, "window_frame_2"}, {SIDE_MAX_Z, -104, -92, 0, "door_frame_70"}, {SIDE_MAX_X, -170, -154, 0, "door_frame_70"}}, 3},
+     {{SIDE_MIN_Z, -130, -110, 9, "frame_stone"}, {SIDE_MAX_Z, -104, -92, 0, "door_frame"}, {SIDE_MAX_X, -170, -154, 0, "door_frame"}}, 3},
     {"rings", -146, -108, -52, -4,
-     {{SIDE_MIN_Z, -104, -92, 0, NULL}, {SIDE_MAX_Z, -130, -110, 9, "window_frame_2"}, {SIDE_MAX_Z, -85, -65, 9, "window_frame_2"},
-      {SIDE_MAX_X, -66, -50, 0, "door_frame_70"}}, 4},
+     {{SIDE_MIN_Z, -104, -92, 0, NULL}, {SIDE_MAX_Z, -130, -110, 9, "frame_stone"}, {SIDE_MAX_Z, -85, -65, 9, "frame_stone"},
+      {SIDE_MAX_X, -66, -50, 0, "door_frame"}}, 4},
     {"rotunda", -48, -216, 48, -112,
-     {{SIDE_MIN_X, -170, -154, 0, NULL}, {SIDE_MAX_X, -190, -174, 0, "door_frame_70"}, {SIDE_MAX_Z, -12, 12, 0, "door_frame_70"},
-      {SIDE_MIN_Z, -38, -18, 9, "window_frame_2"}, {SIDE_MIN_Z, 18, 38, 9, "window_frame_2"}}, 5},
+     {{SIDE_MIN_X, -170, -154, 0, NULL}, {SIDE_MAX_X, -190, -174, 0, "door_frame"}, {SIDE_MAX_Z, -12, 12, 0, "door_frame"},
+      {SIDE_MIN_Z, -38, -18, 9, "frame_stone"}, {SIDE_MIN_Z, 18, 38, 9, "frame_stone"}}, 5},
     {"hall", -48, -108, 48, -4,
-     {{SIDE_MIN_X, -66, -50, 0, NULL}, {SIDE_MAX_X, -66, -50, 0, "door_frame_70"}, {SIDE_MIN_Z, -12, 12, 0, NULL},
-      {SIDE_MAX_Z, -12, 12, 0, "door_frame_70"}}, 4},
+     {{SIDE_MIN_X, -66, -50, 0, NULL}, {SIDE_MAX_X, -66, -50, 0, "door_frame"}, {SIDE_MIN_Z, -12, 12, 0, NULL},
+      {SIDE_MAX_Z, -12, 12, 0, "door_frame"}}, 4},
     {"library", 52, -216, 146, -112,
-     {{SIDE_MIN_X, -190, -174, 0, NULL}, {SIDE_MAX_Z, 92, 104, 0, "door_frame_70"}, {SIDE_MIN_Z, 110, 130, 9, "window_frame_2"}}, 3},
+     {{SIDE_MIN_X, -190, -174, 0, NULL}, {SIDE_MAX_Z, 92, 104, 0, "door_frame"}, {SIDE_MIN_Z, 110, 130, 9, "frame_stone"}}, 3},
     {"vases", 52, -108, 146, -4,
-     {{SIDE_MIN_X, -66, -50, 0, NULL}, {SIDE_MIN_Z, 92, 104, 0, NULL}, {SIDE_MAX_Z, 65, 85, 9, "window_frame_2"},
-      {SIDE_MAX_Z, 110, 130, 9, "window_frame_2"}}, 4},
+     {{SIDE_MIN_X, -66, -50, 0, NULL}, {SIDE_MIN_Z, 92, 104, 0, NULL}, {SIDE_MAX_Z, 65, 85, 9, "frame_stone"},
+      {SIDE_MAX_Z, 110, 130, 9, "frame_stone"}}, 4},
 };
 enum { ROOM_COUNT = (int)(sizeof rooms / sizeof *rooms) };
 
@@ -67,7 +67,7 @@ static cuts heights_between(int32_t bottom, int32_t top)
 
 static void room_write(obj_writer *w, const museum_room *m)
 {
-    static const char *const materials[6] = {"gallery_wall_7", "gallery_wall_7", "parquet_69", "stucco_179", "gallery_wall_7", "gallery_wall_7"};
+    static const char *const materials[6] = {"gallery_wall", "gallery_wall", "floor_wood", "ceiling", "gallery_wall", "gallery_wall"};
     const block body = {.min = {m->min_x * TENTH, 0, m->min_z * TENTH}, .max = {m->max_x * TENTH, CEILING, m->max_z * TENTH}};
     const cuts heights = heights_between(0, CEILING);
     cuts u[2] = {0};
@@ -123,7 +123,7 @@ static void facade_write(obj_writer *w, const block *body, side s, const cuts *x
 static void parapet_write(obj_writer *w)
 {
     obj_object(w, "parapet");
-    obj_material(w, "cornice_75");
+    obj_material(w, "cornice_stone");
     const double y = 5.21; // a centimetre over the roof: no two faces coincide
     obj_block(w, &(block){.min = {-153 * TENTH, 48 * TENTH, 2 * CENTIMETRE}, .max = {153 * TENTH, 58 * TENTH, 3 * TENTH}});
     const block rest[3] = {block_at(0, -21.8, y, 30, .4, .5), block_at(-14.8, -11, y, .4, 20.8, .5), block_at(14.8, -11, y, .4, 20.8, .5)};
@@ -146,7 +146,7 @@ static void house_write(obj_writer *w)
         }
     obj_object(w, "museum");
     for (side s = SIDE_MIN_X; s <= SIDE_MAX_Z; ++s) {
-        obj_material(w, s == SIDE_MAX_Y ? "roof_felt_98" : "sandstone_739");
+        obj_material(w, s == SIDE_MAX_Y ? "roof_felt" : "sandstone");
         facade_write(w, &body, s, &x, &z);
     }
     parapet_write(w);
@@ -161,7 +161,7 @@ static double pedestal(obj_writer *w, uint32_t number, double x, double z, doubl
     const block slab = block_at(x, z, PEDESTAL_FOOT, wide * 1.2, wide * 1.2, 0.1);
     const block body = block_at(x, z, 0.115, wide, wide, high - 0.115);
     obj_numbered_object(w, "pedestal", number);
-    obj_material(w, "pedestal_857");
+    obj_material(w, "pedestal_stone");
     obj_block(w, &slab);
     obj_block(w, &body);
     return high + PEDESTAL_FOOT;
@@ -173,7 +173,7 @@ static void figures_fill(obj_writer *w)
     for (uint32_t i = 0; i < 4; ++i) {
         const double top = pedestal(w, i, at[i][0], at[i][1], 0.5, 0.8);
         obj_numbered_object(w, "figure", i);
-        obj_material(w, i % 2 ? "bronze_38" : "marble_365");
+        obj_material(w, i % 2 ? "bronze_912" : "marble");
         model_figure(w, (spot){at[i][0], top, at[i][1]}, 1.9, at[i][2]);
     }
 }
@@ -182,13 +182,13 @@ static void rings_fill(obj_writer *w)
 {
     const double knot = pedestal(w, 10, -9.9, -5.2, 0.6, 1.0);
     obj_object(w, "knot");
-    obj_material(w, "copper_56");
+    obj_material(w, "copper_652");
     model_knot(w, (spot){-9.9, knot + 1.02, -5.2}, 0.9);
     static const double at[4][2] = {{-13, -2.4}, {-13, -8.6}, {-6.9, -8.8}, {-6.9, -2}};
     for (uint32_t i = 0; i < 4; ++i) {
         const double top = pedestal(w, 11 + i, at[i][0], at[i][1], 1.0, 0.6);
         obj_numbered_object(w, i % 2 ? "ball" : "ring", i);
-        obj_material(w, i % 2 ? "glazed_blue_38" : "gold_844");
+        obj_material(w, i % 2 ? "glazed_blue_2" : "gold_242");
         if (i % 2) model_ball(w, (spot){at[i][0], top + 0.455, at[i][1]}, 0.45, 32);
         else model_ring(w, (spot){at[i][0], top + 0.455, at[i][1]}, 0.33, 0.12);
     }
@@ -198,12 +198,12 @@ static void rotunda_fill(obj_writer *w)
 {
     const double top = pedestal(w, 20, 0, -15.4, 0.7, 1.4);
     obj_object(w, "founder");
-    obj_material(w, "bronze_38");
+    obj_material(w, "bronze_912");
     model_figure(w, (spot){0, top, -15.4}, 2.7, 0.5);
     for (uint32_t i = 0; i < 4; ++i) {
         const double x = i % 2 ? 3.4 : -3.4, z = i < 2 ? -13.2 : -19.8;
         obj_numbered_object(w, "column", i);
-        obj_material(w, "marble_365");
+        obj_material(w, "marble");
         model_column(w, (spot){x, PEDESTAL_FOOT, z}, 4.38);
     }
 }
@@ -213,11 +213,11 @@ static void hall_fill(obj_writer *w)
     for (uint32_t i = 0; i < 4; ++i) {
         const double x = i % 2 ? 3 : -3, z = i < 2 ? -2.6 : -8.8;
         obj_numbered_object(w, "column", 4 + i);
-        obj_material(w, "marble_365");
+        obj_material(w, "marble");
         model_column(w, (spot){x, PEDESTAL_FOOT, z}, 4.38);
     }
     obj_object(w, "desk");
-    obj_material(w, "walnut_56");
+    obj_material(w, "walnut_wood");
     const block desk[3] = {block_at(3.2, -4.3, .01, .7, 1.6, 1), block_at(3.2, -4.3, 1.02, .9, 1.8, .05), block_at(-3.6, -7.6, .4, .5, 1, .06)};
     for (int i = 0; i < 3; ++i) obj_block(w, &desk[i]);
     obj_block(w, &(block){.min = {-38 * TENTH, CENTIMETRE, -80 * TENTH}, .max = {-34 * TENTH, 39 * CENTIMETRE, -72 * TENTH}});
@@ -225,15 +225,15 @@ static void hall_fill(obj_writer *w)
 
 static void bookcase(obj_writer *w, uint32_t number, double x, double z, random_stream *r)
 {
-    static const char *const covers[3] = {"book_red_93", "book_green_48", "book_brown_35"};
+    static const char *const covers[3] = {"book_red_860", "book_green_391", "book_brown_199"};
     obj_numbered_object(w, "bookcase", number);
-    obj_material(w, "walnut_56");
+    obj_material(w, "walnut_wood");
     const block sides[3] = {block_at(x - 1.2, z, .01, .05, .4, 2.4), block_at(x + 1.2, z, .01, .05, .4, 2.4), block_at(x, z, 2.42, 2.6, .44, .06)};
     for (int i = 0; i < 3; ++i) obj_block(w, &sides[i]);
     for (int shelf = 0; shelf < 5; ++shelf) {
         const double y = 0.08 + 0.46 * shelf;
         const block board = block_at(x, z, y, 2.34, .38, .03);
-        obj_material(w, "walnut_56");
+        obj_material(w, "walnut_wood");
         obj_block(w, &board);
         double left = x - 1.15;
         for (;;) {
@@ -254,7 +254,7 @@ static void library_fill(obj_writer *w, random_stream *r)
     static const double at[4][2] = {{7.2, -21.2}, {7.4, -14.6}, {12.4, -14.6}, {12.4, -17.6}};
     for (uint32_t i = 0; i < 4; ++i) bookcase(w, i, at[i][0], at[i][1], r);
     obj_object(w, "table");
-    obj_material(w, "walnut_56");
+    obj_material(w, "walnut_wood");
     const block table[5] = {block_at(11.6, -20, .74, 2.4, 1, .05), block_at(10.6, -20.3, .01, .08, .08, .72), block_at(12.6, -20.3, .01, .08, .08, .72),
                             block_at(10.6, -19.7, .01, .08, .08, .72), block_at(12.6, -19.7, .01, .08, .08, .72)};
     for (int i = 0; i < 5; ++i) obj_block(w, &table[i]);
@@ -263,7 +263,7 @@ static void library_fill(obj_writer *w, random_stream *r)
 static void vases_fill(obj_writer *w)
 {
     static const double at[5][3] = {{7.2, -8.8, 1.1}, {12.8, -8.6, 1.3}, {12.8, -5.2, 0.9}, {12.8, -2, 1.2}, {7.2, -2.2, 1.0}};
-    static const char *const glazes[3] = {"glazed_blue_38", "terracotta_71", "glazed_green_16"};
+    static const char *const glazes[3] = {"glazed_blue_2", "terracotta_452", "glazed_green_109"};
     for (uint32_t i = 0; i < 5; ++i) {
         const double top = pedestal(w, 30 + i, at[i][0], at[i][1], 0.8, 0.6);
         obj_numbered_object(w, "vase", i);

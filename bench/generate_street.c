@@ -50,17 +50,18 @@ static void kerb_write(obj_writer *w, int32_t z, side s)
 static void ground_write(obj_writer *w)
 {
     obj_object(w, "road");
-    strip_write(w, "asphalt_20", 30, 90, -KERB);
-    obj_material(w, "kerb_208");
+    strip_write(w, "road_asphalt", 30, 90, -KERB);
+    obj_material(w, "kerb_stone");
     kerb_write(w, 30, SIDE_MAX_Z);
     kerb_write(w, 90, SIDE_MIN_Z);
     obj_object(w, "pavement");
-    strip_write(w, "paving_3", 0, 30, 0);
-    strip_write(w, "paving_3", 90, 120, 0);
+    strip_write(w, "paving_stone", 0, 30, 0);
+    strip_write(w, "paving_stone", 90, 120, 0);
     obj_object(w, "lawn");
-    strip_write(w, "grass_17", -600, -220, 0);
-    strip_write(w, "grass_17", 120, 500, 0);
-    obj_material(w, "grass_17");
+    strip_write(w, "grass", -600, -220, 0);
+    strip_write(w, "grass", 120, 500, 0);
+    obj_object(w, "yard");
+    obj_material(w, "grass");
     piece_write(w, -900, -150, -220, 0); // beside the museum
     piece_write(w, 150, 900, -220, 0);
 }
@@ -98,7 +99,7 @@ static void sill_write(obj_writer *w, const house *h, rectangle q)
     const int faces_north = h->front == SIDE_MIN_Z;
     const int32_t wall = faces_north ? h->body.min.z : h->body.max.z, out = 9 * CENTIMETRE;
     obj_block(w, &(block){.min = {q.u0 - 8 * CENTIMETRE, q.v0 - 9 * CENTIMETRE, faces_north ? wall - out : wall + CENTIMETRE / 5},
-                          .max = {q.u1 + 8 * CENTIMETRE, q.v0 - CENTIMETRE, faces_north ? wall - CENTIMETRE / 5 : wall + out}});
+                          .max = {q.u1 + 8 * CENTIMETRE, q.v0, faces_north ? wall - CENTIMETRE / 5 : wall + out}});
 }
 
 static void front_write(obj_writer *w, const house *h, side s)
@@ -115,14 +116,14 @@ static void front_write(obj_writer *w, const house *h, side s)
         }
     obj_material(w, h->facade);
     obj_panel(w, &p);
-    obj_material(w, "window_frame_2");
+    obj_material(w, "frame_stone");
     for (uint32_t i = 0; i < p.opening_count; ++i) obj_reveal(w, &p, i, WINDOW_DEEP);
     for (uint32_t i = 0; i < p.opening_count; ++i) {
-        obj_material(w, openings[i].v0 == 0 ? "door_wood_71" : "window_glass_70");
+        obj_material(w, openings[i].v0 == 0 ? "door_wood" : "window_glass");
         obj_pane(w, &p, i, WINDOW_DEEP);
     }
     if (s != h->front) return;
-    obj_material(w, "cornice_75");
+    obj_material(w, "cornice_stone");
     for (uint32_t i = 0; i < p.opening_count; ++i)
         if (openings[i].v0) sill_write(w, h, openings[i]);
 }
@@ -132,9 +133,9 @@ static void flat_roof_write(obj_writer *w, const house *h)
     const block *b = &h->body;
     const int32_t rim = 25 * CENTIMETRE, gap = CENTIMETRE, top = b->max.y + 7 * TENTH;
     const cuts x = {.at = {b->min.x, b->max.x}, .count = 2}, z = {.at = {b->min.z, b->max.z}, .count = 2};
-    obj_material(w, "roof_felt_98");
+    obj_material(w, "roof_felt");
     obj_panel(w, &(panel){.body = b, .side = SIDE_MAX_Y, .facing = FACING_OUT, .u = &x, .v = &z});
-    obj_material(w, "cornice_75");
+    obj_material(w, "cornice_stone");
     obj_block(w, &(block){.min = {b->min.x, b->max.y + gap, b->min.z}, .max = {b->max.x, top, b->min.z + rim}});
     obj_block(w, &(block){.min = {b->min.x, b->max.y + gap, b->max.z - rim}, .max = {b->max.x, top, b->max.z}});
     obj_block(w, &(block){.min = {b->min.x, b->max.y + gap, b->min.z + rim + gap}, .max = {b->min.x + rim, top, b->max.z - rim - gap}});
@@ -161,7 +162,7 @@ static void gable_roof_write(obj_writer *w, const house *h, int32_t rise)
         p[i][4] = (place){x[i], y + rise + CENTIMETRE, middle};
         p[i][5] = (place){x[i], y - drop + CENTIMETRE, b->min.z - over};
     }
-    obj_material(w, "roof_tiles_60");
+    obj_material(w, "roof_tiles");
     for (int i = 0; i < 6; ++i) {
         const int k = (i + 1) % 6;
         obj_polygon(w, (const place[4]){p[0][i], p[0][k], p[1][k], p[1][i]}, 4);
@@ -176,14 +177,15 @@ static void chimney_write(obj_writer *w, const house *h, random_stream *r)
 {
     const block *b = &h->body;
     const int32_t x = random_between(r, b->min.x + METRE, b->max.x - 2 * METRE), z = (b->min.z + b->max.z) / 2 + random_between(r, METRE, 2 * METRE);
-    obj_material(w, "brick_90");
+    obj_material(w, "brick");
     obj_block(w, &(block){.min = {x, b->max.y + TENTH, z}, .max = {x + 6 * TENTH, b->max.y + 45 * TENTH, z + 6 * TENTH}});
 }
 
 static void house_write(obj_writer *w, const house *h, random_stream *r)
 {
     const block *b = &h->body;
-    cuts z = {.at = {b->min.z, b->max.z}, .count = 2}, y = {.at = {0, b->max.y}, .count = 2};
+    cuts x = {0}, y = {0}, z = {.at = {b->min.z, b->max.z}, .count = 2};
+    window_cuts(h, &x, &y); // the side walls have the cuts in height of the front, so that they share its vertices
     obj_numbered_object(w, "house", h->number);
     front_write(w, h, SIDE_MIN_Z);
     front_write(w, h, SIDE_MAX_Z);
@@ -197,7 +199,7 @@ static void house_write(obj_writer *w, const house *h, random_stream *r)
 
 static uint32_t row_write(obj_writer *w, int32_t from, int32_t to, side front, uint32_t number, random_stream *r)
 {
-    static const char *const facades[5] = {"brick_90", "plaster_yellow_73", "plaster_white_65", "plaster_rose_66", "sandstone_739"};
+    static const char *const facades[5] = {"brick", "plaster_yellow_276", "plaster_white_785", "plaster_rose_695", "sandstone"};
     for (int32_t x = from; x + 9 * METRE <= to;) {
         int32_t wide = random_between(r, 90, 140) * TENTH;
         if (to - x - wide < 10 * METRE) wide = to - x < 16 * METRE ? to - x : (to - x) / 2;
@@ -217,7 +219,7 @@ static uint32_t row_write(obj_writer *w, int32_t from, int32_t to, side front, u
 
 static void car_write(obj_writer *w, uint32_t number, double x, double z, random_stream *r)
 {
-    static const char *const paints[4] = {"car_red_2", "car_blue_58", "car_white_498", "car_green_52"};
+    static const char *const paints[4] = {"car_red_360", "car_blue_614", "car_white_126", "car_green_832"};
     static const double outline[8][2] = {{-2.1, .35}, {2.1, .35}, {2.1, .8}, {1.3, .9}, {.7, 1.42}, {-1.2, 1.42}, {-1.8, .9}, {-2.1, .85}};
     place side_a[8], side_b[8];
     for (int i = 0; i < 8; ++i) {
@@ -242,7 +244,7 @@ static void car_write(obj_writer *w, uint32_t number, double x, double z, random
         obj_polygon(w, a, 5);
         obj_polygon(w, b, 5);
     }
-    obj_material(w, "rubber_363");
+    obj_material(w, "rubber_8");
     for (int i = 0; i < 4; ++i) model_ball(w, (spot){x + (i % 2 ? 1.35 : -1.35), 0.215, z + (i < 2 ? 0.72 : -0.72)}, 0.33, 12);
 }
 
@@ -251,7 +253,7 @@ static void bench_write(obj_writer *w, uint32_t number, double x, double z)
     const block parts[4] = {block_at(x, z, .45, 1.8, .45, .05), block_at(x, z + .2, .52, 1.8, .05, .45), block_at(x - .7, z, .01, .08, .4, .43),
                             block_at(x + .7, z, .01, .08, .4, .43)};
     obj_numbered_object(w, "bench", number);
-    obj_material(w, "walnut_56");
+    obj_material(w, "walnut_wood");
     for (int i = 0; i < 4; ++i) obj_block(w, &parts[i]);
 }
 
@@ -266,7 +268,7 @@ static void furniture_write(obj_writer *w, random_stream *r)
         obj_numbered_object(w, "tree", trees++);
         model_tree(w, (spot){i * 15.0 + 6, 0, 10.2}, 6.5 + 2 * random_unit(r), r);
         obj_numbered_object(w, "lamp", lamps++);
-        obj_material(w, "cast_iron_58");
+        obj_material(w, "iron_metal");
         model_lamp(w, (spot){i * 15.0 + 7.5, 0, i % 2 ? 2.5 : 9.5}, 5);
     }
     static const double garden[4][2] = {{-11, -29}, {-3, -33}, {5, -28}, {12, -31}};
@@ -274,7 +276,7 @@ static void furniture_write(obj_writer *w, random_stream *r)
         obj_numbered_object(w, "tree", trees++);
         model_tree(w, (spot){garden[i][0], 0, garden[i][1]}, 7 + 3 * random_unit(r), r);
     }
-    static const double cars[7] = {-52, -33, -21, 14, 22, 37, 57};
+    static const double cars[7] = {-52, -33, -21, 47, 24, 37, 57};
     for (uint32_t i = 0; i < 7; ++i) car_write(w, i, cars[i], i % 2 ? 4.1 : 7.9, r);
     bench_write(w, 0, -8, 10.6);
     bench_write(w, 1, 9, 10.6);

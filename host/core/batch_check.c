@@ -17,9 +17,12 @@ static const char *runs_fault(viewer *v, uint32_t stage, const cull_batch *batch
     if (batch->run_count > v->stages[stage].run_capacity) return "more runs than it told";
     if (!v->kernel->check(batch->runs, batch->run_count, items + movers, &sum)) return "a run outside the zone, or an empty one";
     if (sum > (uint64_t)items + movers) return "an item given twice";
-    for (uint32_t i = 0; movers && i < batch->run_count; ++i)
+    uint32_t mover_runs = 0;
+    for (uint32_t i = 0; movers && i < batch->run_count; ++i) {
         if (batch->runs[i].first < items && batch->runs[i].first + batch->runs[i].count > items) return "a run over items and movers";
-    return NULL;
+        mover_runs += batch->runs[i].first >= items;
+    }
+    return mover_runs > movers ? "a mover given twice" : NULL; // more would not fit where they go apart from the items'
 }
 
 static const char *repeat_fault(viewer *v, const cull_batch *batch)

@@ -2,18 +2,20 @@
 // SPDX-License-Identifier: MIT
 #include "builtin_brute.h"
 
+// The least height over the planes: minima become vectors in any compiler. A difference of floats has the exact sign.
 static inline uint32_t test16(const brute_plane *planes, uint32_t plane_count, uint32_t i)
 {
-    uint32_t inside[16];
-    for (int b = 0; b < 16; b++) inside[b] = UINT32_C(1) << b;
+    float least[16] = {0};
     for (uint32_t k = 0; k < plane_count; k++) {
         const brute_plane *p = &planes[k];
         const float *x = p->x + i, *y = p->y + i, *z = p->z + i;
-        for (int b = 0; b < 16; b++)
-            inside[b] = (x[b] * p->normal_x + y[b] * p->normal_y) + z[b] * p->normal_z >= p->limit ? inside[b] : 0;
+        for (int b = 0; b < 16; b++) {
+            const float height = (x[b] * p->normal_x + y[b] * p->normal_y) + z[b] * p->normal_z - p->limit;
+            least[b] = height < least[b] ? height : least[b];
+        }
     }
     uint32_t bits = 0;
-    for (int b = 0; b < 16; b++) bits |= inside[b];
+    for (int b = 0; b < 16; b++) bits |= least[b] >= 0 ? UINT32_C(1) << b : 0;
     return bits;
 }
 

@@ -108,7 +108,7 @@ static result tell_failure(cull_result code, const chain_stage *stage, const cha
     return report_error(r, NULL, 0, "culler '%s' could not %s this zone (result %d); try another chain", id, what, (int)code);
 }
 
-static result built_is_sound(const chain_stage *stage, report *r)
+static result built_is_sound(const chain_stage *stage, const cull_hierarchy *lent, report *r)
 {
     const cull_built *b = &stage->built;
     const cull_promises may = stage->plugin->descriptor->may_promise;
@@ -118,6 +118,7 @@ static result built_is_sound(const chain_stage *stage, report *r)
         fault = "a capacity is over 2^28";
     else if (b->scratch_size > SCRATCH_BYTES_MOST) fault = "it wants over 4 GiB of scratch";
     else if (b->promises & ~may) fault = "it promises more than its descriptor's may_promise";
+    else if (b->walks_hierarchy && stage->role == ROLE_FILTER && !lent) fault = "it walks a hierarchy, and the select has none";
     else if (b->max_captures && !b->slot_count) fault = "it captures without slots";
     return fault ? report_error(r, NULL, 0, "culler '%s' told nonsense after build: %s; mend the plugin", stage->plugin->descriptor->id, fault) : RESULT_OK;
 }
@@ -144,12 +145,15 @@ static result stage_build(chain *c, uint32_t place, const chain_request *q, repo
     const char *values[256];
     result done = option_values(stage->plugin->descriptor, &q->spec->stages[place], r, values);
     if (done != RESULT_OK) return done;
-    cull_result code = stage->plugin->create(&q->services->host, values, &stage->culler);
-    if (code != CULL_OK || !stage->culler) return tell_failure(code != CULL_OK ? code : CULL_ERR_ZONE, stage, "create an index for", r);
+    cull_culler *made = NULL; // not the stage's own: what a failed create leaves there is nothing to destroy
+    cull_result code = stage->plugin->create(&q->services->host, values, &made);
+    if (code == CULL_OK) stage->culler = made;
+    if (!stage->culler) return tell_failure(code != CULL_OK ? code : CULL_ERR_ZONE, stage, "create an index for", r);
     const cull_zone *zone = place == 0 ? &c->zone : &c->ordered_zone;
-    code = stage->plugin->build(stage->culler, zone, place == 0 ? NULL : hierarchy_of_select(c), &stage->built);
+    const cull_hierarchy *lent = place == 0 ? NULL : hierarchy_of_select(c);
+    code = stage->plugin->build(stage->culler, zone, lent, &stage->built);
     if (code != CULL_OK) return tell_failure(code, stage, "build", r);
-    done = built_is_sound(stage, r);
+    done = built_is_sound(stage, lent, r);
     if (done != RESULT_OK || place > 0) return done;
     c->order = stage->built.order;
     if (c->order) done = order_is_permutation(c, stage->plugin->descriptor->id, r);

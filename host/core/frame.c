@@ -76,7 +76,9 @@ static void collect_answers(frame *f, collect_how how)
     uint32_t stalled = 0;
     f->visit.answer_count = 0;
     if (!d->collect || !f->v->answer_capacity) return;
+    time_stop(f);
     const uint32_t got = d->collect(d->user, how, f->q->frame.frame, f->v->answers.items, f->v->answer_capacity, &stalled);
+    time_start(f);
     f->visit.answer_count = got < f->v->answer_capacity ? got : f->v->answer_capacity;
     f->visit.answers = f->v->answers.items;
     f->stats->stalls += stalled != 0;
@@ -104,7 +106,7 @@ static void tell_fault(frame *f, uint32_t stage, const char *what)
     f->stats->faults++;
     if (f->v->told_fault) return;
     f->v->told_fault = 1;
-    report_warning(f->v->log, NULL, 0, "culler '%s' misbehaves: %s (frame %u); its zone is drawn whole where it does",
+    report_error(f->v->log, NULL, 0, "culler '%s' misbehaves: %s (frame %u); its zone is drawn whole where it does",
                    f->v->chain->stages[stage].plugin->descriptor->id, what, f->q->frame.frame);
 }
 
@@ -124,15 +126,53 @@ static void take_counts(frame *f, const cull_batch *b)
     f->stats->limits_hit += b->limits_hit;
 }
 
+static cull_batch batch_of_filter(frame *f, uint32_t stage)
+{
+    viewer *v = f->v;
+    if (f->visit.capture_count) memset(v->keep_captures.items, 1, f->visit.capture_count);
+    if (f->visit.picture_count) memset(v->keep_pictures.items, 1, f->visit.picture_count);
+    return (cull_batch){.runs = v->stages[stage].runs.items, .keep_captures = v->keep_captures.items, .keep_pictures = v->keep_pictures.items};
+}
+
+static int picture_has_slot(const frame *f, const cull_picture *p)
+{
+    int filled = f->v->slots[p->slot];
+    for (uint32_t i = 0; i < f->visit.capture_count; ++i) filled |= f->visit.captures[i].slot == p->slot;
+    return filled;
+}
+
+// After a filter: of the select's captures and pictures only those that it kept. NULL, or what is wrong with its choice.
+static const char *drop_unkept(frame *f)
+{
+    viewer *v = f->v;
+    cull_capture *captures = v->select_captures.items;
+    cull_picture *pictures = v->select_pictures.items;
+    const uint8_t *keep_capture = v->keep_captures.items, *keep_picture = v->keep_pictures.items;
+    uint32_t kept_captures = 0, kept_pictures = 0;
+    for (uint32_t i = 0; i < f->visit.capture_count; ++i)
+        if (keep_capture[i]) captures[kept_captures++] = captures[i];
+    for (uint32_t i = 0; i < f->visit.picture_count; ++i)
+        if (keep_picture[i]) pictures[kept_pictures++] = pictures[i];
+    f->visit.capture_count = kept_captures;
+    f->visit.picture_count = kept_pictures;
+    for (uint32_t i = 0; i < kept_pictures; ++i)
+        if (!picture_has_slot(f, &pictures[i])) return "it drops a capture and keeps its picture";
+    return NULL;
+}
+
 // A stage before the last: one call, its runs become the next one's candidates. 0 on nonsense.
 static int run_early_stage(frame *f, uint32_t stage)
 {
     viewer *v = f->v;
-    cull_batch b = {.runs = v->stages[stage].runs.items, .captures = v->select_captures.items, .pictures = v->select_pictures.items};
+    cull_batch b = batch_of_filter(f, stage);
+    b.tests = v->early_tests.items;
+    b.captures = stage == 0 ? v->select_captures.items : v->early_captures.items;
+    b.pictures = stage == 0 ? v->select_pictures.items : v->early_pictures.items;
     const cull_progress progress = call(f, stage, &b);
     const char *fault = progress != CULL_DONE ? "it steps, but is not the last select or filter of its chain" : batch_fault(v, stage, &b, 0, 0);
     if (!fault && b.test_count) fault = "it asks for tests, but is not the last select or filter of its chain";
     if (!fault && stage > 0 && (b.capture_count || b.picture_count)) fault = "it gives pictures, but is neither first nor last of its chain";
+    if (!fault && stage > 0) fault = drop_unkept(f);
     if (fault) {
         tell_fault(f, stage, fault);
         return 0;
@@ -151,15 +191,8 @@ static int run_early_stage(frame *f, uint32_t stage)
 // A select's captures and pictures that the filter kept are carried out once, with the filter's last step.
 static void carry_out_kept(frame *f)
 {
-    viewer *v = f->v;
-    cull_capture *captures = v->select_captures.items;
-    cull_picture *pictures = v->select_pictures.items;
-    const uint8_t *keep_capture = v->keep_captures.items, *keep_picture = v->keep_pictures.items;
-    cull_batch kept = {.captures = captures, .pictures = pictures};
-    for (uint32_t i = 0; i < f->visit.capture_count; ++i)
-        if (keep_capture[i]) captures[kept.capture_count++] = captures[i];
-    for (uint32_t i = 0; i < f->visit.picture_count; ++i)
-        if (keep_picture[i]) pictures[kept.picture_count++] = pictures[i];
+    const cull_batch kept = {.captures = f->v->select_captures.items, .pictures = f->v->select_pictures.items,
+                             .capture_count = f->visit.capture_count, .picture_count = f->visit.picture_count};
     if (kept.capture_count || kept.picture_count) carry_out(f, &kept, 0, 0);
 }
 
@@ -169,10 +202,10 @@ static uint32_t run_last_stage(frame *f)
     viewer *v = f->v;
     const uint32_t stage = v->last;
     const cull_built *built = &v->chain->stages[stage].built;
-    cull_batch b = {.runs = v->stages[stage].runs.items, .pictures = v->pictures.items, .tests = v->tests.items, .captures = v->captures.items,
-                    .keep_captures = v->keep_captures.items, .keep_pictures = v->keep_pictures.items};
-    if (f->visit.capture_count) memset(b.keep_captures, 1, f->visit.capture_count);
-    if (f->visit.picture_count) memset(b.keep_pictures, 1, f->visit.picture_count);
+    cull_batch b = batch_of_filter(f, stage);
+    b.pictures = v->pictures.items;
+    b.tests = v->tests.items;
+    b.captures = v->captures.items;
     collect_answers(f, COLLECT_WHAT_IS_READY);
     for (uint32_t step = 0;; ++step) {
         const uint32_t earlier_runs = b.run_count, earlier_pictures = b.picture_count;
@@ -182,6 +215,7 @@ static uint32_t run_last_stage(frame *f)
         const char *fault = batch_fault(v, stage, &b, earlier_runs, earlier_pictures);
         if (!fault && progress != CULL_DONE && progress != CULL_MORE && progress != CULL_WAIT) fault = "it returned neither DONE, MORE nor WAIT";
         if (!fault && progress != CULL_DONE && step + 1 >= built->max_steps) fault = "it wants more steps than it told";
+        if (!fault && progress == CULL_DONE && stage > 0) fault = drop_unkept(f);
         if (fault) {
             tell_fault(f, stage, fault);
             return UINT32_MAX;
@@ -258,6 +292,7 @@ void frame_run(viewer *v, const frame_input *q, visible_set *out_set, frame_stat
     const frame_driver *d = &q->driver;
     if (d->draw && run_count == UINT32_MAX) d->draw(d->user, set.runs, set.run_count);
     if (d->draw && set.mover_run_count && (run_count == UINT32_MAX || !v->chain->stages[v->last].built.takes_movers)) d->draw(d->user, set.mover_runs, set.mover_run_count);
+    for (uint32_t i = 0; i < set.run_count; ++i) out_stats->items_drawn += set.runs[i].count;
     for (uint32_t i = 0; i < set.mover_run_count; ++i) out_stats->movers_drawn += set.mover_runs[i].count;
     if (out_set) *out_set = set;
 }

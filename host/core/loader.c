@@ -27,13 +27,27 @@ struct loader {
     buffer libraries;      // library
 };
 
-static result add_texts(loader *l, buffer *to, const char *const *texts, uint32_t count)
+static result add_text(loader *l, buffer *to, const char *text)
 {
-    for (uint32_t i = 0; i < count; ++i) {
-        const char *copy = arena_text(&l->texts, texts[i], strlen(texts[i]));
-        if (!copy || !buffer_append(to, &copy, 1)) return RESULT_NO_MEMORY;
-    }
-    return RESULT_OK;
+    const char *copy = arena_text(&l->texts, text, strlen(text));
+    return copy && buffer_append(to, &copy, 1) ? RESULT_OK : RESULT_NO_MEMORY;
+}
+
+// A name without a slash would be searched for by the system's rules; here it is a file like any other.
+static result add_file(loader *l, const char *name)
+{
+    char path[PATH_BYTES];
+    const int length = snprintf(path, sizeof path, "%s%s", strchr(name, '/') ? "" : "./", name);
+    return add_text(l, &l->files, length > 0 && (size_t)length < sizeof path ? path : name);
+}
+
+static result add_places(loader *l, const loader_options *o)
+{
+    result done = RESULT_OK;
+    for (uint32_t i = 0; i < o->file_count && done == RESULT_OK; ++i) done = add_file(l, o->files[i]);
+    for (uint32_t i = 0; i < o->folder_count && done == RESULT_OK; ++i)
+        if (o->folders[i][0]) done = add_text(l, &l->folders, o->folders[i]); // an empty name is no folder, least of all the root
+    return done;
 }
 
 result loader_open(const loader_options *o, const allocator *memory, report *r, loader **out)
@@ -49,7 +63,7 @@ result loader_open(const loader_options *o, const allocator *memory, report *r, 
     l->libraries = buffer_make(memory, sizeof(library));
     uint32_t count;
     const cull_plugin *const *builtin = builtin_plugins(&count);
-    int failed = add_texts(l, &l->files, o->files, o->file_count) || add_texts(l, &l->folders, o->folders, o->folder_count);
+    int failed = add_places(l, o) != RESULT_OK;
     for (uint32_t i = 0; i < count; ++i) failed = failed || !buffer_append(&l->plugins, &(loaded_plugin){builtin[i], NULL}, 1);
     if (failed) {
         loader_close(l);
@@ -116,8 +130,7 @@ static const char *plugin_fault(const loader *l, const cull_plugin *p)
     if (!p->create || !p->destroy || !p->build || !p->open || !p->close || !p->get_extension)
         return "one of create, destroy, build, open, close, get_extension is NULL";
     if (!p->select && !p->filter && !p->cross) return "it has no verb: select, filter and cross are all NULL";
-    if (plugin_known(l, p->descriptor->id)) return "its id is taken by a culler found before it";
-    return NULL;
+    return plugin_known(l, p->descriptor->id) ? "its id is taken by a culler found before it" : NULL;
 }
 
 static const char *entry_fault(const loader *l, const cull_entry_v0 *entry, char *text, size_t size)
@@ -131,6 +144,8 @@ static const char *entry_fault(const loader *l, const cull_entry_v0 *entry, char
     for (uint32_t i = 0; i < entry->plugin_count; ++i) {
         const char *fault = plugin_fault(l, entry->plugins[i]);
         if (fault) return fault;
+        for (uint32_t k = 0; k < i; ++k)
+            if (strcmp(entry->plugins[i]->descriptor->id, entry->plugins[k]->descriptor->id) == 0) return "it lists an id twice";
     }
     return NULL;
 }
@@ -218,6 +233,17 @@ static result files_open(loader *l)
     return RESULT_OK;
 }
 
+// A library that was asked for by name must be good: another of the same id would be taken for it.
+static result tell_refused_files(const loader *l, report *r)
+{
+    const char *const *files = l->files.items;
+    const refused_plugin *refused = l->refused.items;
+    for (size_t i = 0; i < l->refused.count; ++i)
+        for (size_t k = 0; k < l->files.count; ++k)
+            if (strcmp(refused[i].path, files[k]) == 0) return report_error(r, files[k], 0, "refused: %s", refused[i].reason);
+    return RESULT_OK;
+}
+
 result loader_scan(loader *l, report *r)
 {
     const char *const *folders = l->folders.items;
@@ -239,35 +265,46 @@ static result named_open(loader *l, const char *id)
     return RESULT_OK;
 }
 
+static void list_add(char list[LIST_BYTES], const char *name)
+{
+    const size_t used = strlen(list);
+    if (used + strlen(name) + 3 < LIST_BYTES) snprintf(list + used, LIST_BYTES - used, "%s%s", used ? ", " : "", name);
+}
+
+static const char *file_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 static result tell_missing(const loader *l, const char *id, report *r)
 {
-    char list[LIST_BYTES] = "";
-    size_t used = 0;
+    char found[LIST_BYTES] = "", bad[LIST_BYTES] = "";
     const loaded_plugin *plugins = l->plugins.items;
-    for (size_t i = 0; i < l->plugins.count; ++i) {
-        const int put = snprintf(list + used, sizeof list - used, "%s%s", i ? ", " : "", plugins[i].plugin->descriptor->id);
-        if (put < 0 || (size_t)put >= sizeof list - used) break;
-        used += (size_t)put;
-    }
+    for (size_t i = 0; i < l->plugins.count; ++i) list_add(found, plugins[i].plugin->descriptor->id);
     const refused_plugin *refused = l->refused.items;
     for (size_t i = 0; i < l->refused.count; ++i) {
-        const char *name = strrchr(refused[i].path, '/');
-        name = name ? name + 1 : refused[i].path;
+        const char *name = file_name(refused[i].path);
         if (strncmp(name, id, strlen(id)) == 0 && strcmp(name + strlen(id), LOADER_SUFFIX) == 0)
-            return report_error(r, refused[i].path, 0, "refused: %s. Cullers found: %s", refused[i].reason, list);
+            return report_error(r, refused[i].path, 0, "refused: %s. Cullers found: %s", refused[i].reason, found);
+        list_add(bad, name);
     }
-    return report_error(r, NULL, 0, "no culler '%s'; found: %s. Name one of them, or set PORTCULLIS_PLUGIN_PATH", id, list);
+    return report_error(r, NULL, 0, "no culler '%s'; found: %s%s%s. Name one of them, or set PORTCULLIS_PLUGIN_PATH", id, found,
+                        *bad ? "; refused, see `portcullis plugins`: " : "", bad);
 }
 
 result loader_find(loader *l, const char *id, report *r, const cull_plugin **out)
 {
     if (!id_is_legal(id)) return report_error(r, NULL, 0, "'%s' is no culler's name; names are of a-z, 0-9 and -", id);
-    result done = RESULT_OK;
-    if (!plugin_known(l, id)) done = files_open(l);
+    result done = files_open(l);
+    if (done == RESULT_OK && tell_refused_files(l, r) != RESULT_OK) return RESULT_BAD_INPUT;
     if (done == RESULT_OK && !plugin_known(l, id)) done = named_open(l, id);
-    if (done == RESULT_OK && !plugin_known(l, id)) return loader_scan(l, r) == RESULT_OK && (*out = plugin_known(l, id)) ? RESULT_OK : tell_missing(l, id, r);
     if (done != RESULT_OK) return report_no_memory(r, NULL);
-    *out = plugin_known(l, id);
+    if (!plugin_known(l, id)) done = loader_scan(l, r); // tells of memory itself
+    if (done != RESULT_OK) return done;
+    const cull_plugin *plugin = plugin_known(l, id);
+    if (!plugin) return tell_missing(l, id, r);
+    *out = plugin;
     return RESULT_OK;
 }
 

@@ -29,7 +29,7 @@ typedef struct loader loader;
 // [main, and all below] The options are copied. Built-in cullers are there at once; no library is opened.
 result loader_open(const loader_options *o, const allocator *memory, report *r, loader **out);
 void loader_close(loader *l); // NULL is fine; no culler of it may live
-// Opens `id`.culler.so of the first folder that has a good one, else looks through all libraries. On failure one line
+// Opens the explicit files, each of which must be good, then `id`.culler.so of the first folder that has a good one, else looks through all libraries. On failure one line
 // names what was found and what was refused.
 result loader_find(loader *l, const char *id, report *r, const cull_plugin **out);
 result loader_scan(loader *l, report *r); // opens everything, for listing

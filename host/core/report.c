@@ -5,7 +5,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-enum { LINE_BYTES = 1024, WARNINGS_SHOWN = 20 };
+enum { LINE_BYTES = 1024, FILE_BYTES = LINE_BYTES / 2, WARNINGS_SHOWN = 20 };
 
 static void line_to_stderr(void *user, report_level level, const char *text)
 {
@@ -25,8 +25,8 @@ static void say(const report *r, report_level level, const char *file, size_t li
     if (!r->line) return;
     char text[LINE_BYTES];
     int used = 0;
-    if (file && line) used = snprintf(text, sizeof text, "%s:%zu: %s", file, line, words[level]);
-    else if (file) used = snprintf(text, sizeof text, "%s: %s", file, words[level]);
+    if (file && line) used = snprintf(text, sizeof text, "%.*s:%zu: %s", FILE_BYTES, file, line, words[level]);
+    else if (file) used = snprintf(text, sizeof text, "%.*s: %s", FILE_BYTES, file, words[level]);
     else used = snprintf(text, sizeof text, "portcullis: %s", level == REPORT_NOTE ? "" : words[level]);
     if (used < 0 || used >= LINE_BYTES) used = 0;
     vsnprintf(text + used, sizeof text - (size_t)used, format, values);

@@ -1,5 +1,6 @@
 // Scene builder: collects what an importer finds, in doubles, and checks every index on the way in.
 // SPDX-License-Identifier: MIT
+#include "material_colour.h"
 #include "scene_builder.h"
 
 #include <math.h>
@@ -65,21 +66,6 @@ void scene_builder_map(scene_builder *b)
     b->is_map = 1;
 }
 
-// A colour from the name alone: hue by hash, moderate saturation, light enough to be lit.
-static uint32_t colour_of_name(const char *name, size_t length)
-{
-    const uint64_t hash = XXH3_64bits(name, length);
-    const double hue = (double)(hash & 0xffff) / 65536 * 6, saturation = 0.15 + 0.35 * (double)(hash >> 16 & 0xff) / 255;
-    const double value = 0.6 + 0.35 * (double)(hash >> 24 & 0xff) / 255;
-    uint32_t colour = 0xff000000u;
-    for (int channel = 0; channel < 3; ++channel) {
-        const double k = fmod(5 - 2 * channel + hue, 6); // HSV to RGB, the closed form
-        const double ramp = fmax(0, fmin(1, fmin(k, 4 - k)));
-        colour |= (uint32_t)(255 * (value - value * saturation * ramp)) << (8 * channel);
-    }
-    return colour;
-}
-
 static result material_slots_grow(scene_builder *b)
 {
     const size_t size = b->material_slots.count ? b->material_slots.count * 2 : MATERIAL_SLOTS_FIRST;
@@ -116,7 +102,7 @@ result scene_builder_material(scene_builder *b, const char *name, size_t length,
     const char *copy = arena_text(&b->names, name, length);
     scene_material *m = copy ? buffer_push(&b->materials, 1) : NULL;
     if (!m) return RESULT_NO_MEMORY;
-    *m = (scene_material){copy, flags, colour_of_name(name, length)};
+    *m = (scene_material){copy, flags, material_colour(name, length)};
     *out = slots[at] = (uint32_t)b->materials.count;
     --*out;
     return RESULT_OK;

@@ -16,6 +16,23 @@ static const int STEP_LOG2_LEAST = -64;       // 5e-20 m: in a scene of no size 
 static const double COORDINATE_MOST = 1e9;    // metres: beyond, doubles no longer hold a tenth of a micrometre
 enum { STEPS_LOG2 = 24 };                     // float's mantissa: coordinates up to 2^24 steps are exact
 
+// Rounds |v| < 2^51 to the nearest integer, ties to even: the sum has no bits below one. A library call each is slower.
+static double round_even(double v)
+{
+    const double shift = 6755399441055744.0; // 1.5 * 2^52
+    return (v + shift) - shift;
+}
+
+static float lesser(float a, float b)
+{
+    return a < b ? a : b;
+}
+
+static float greater(float a, float b)
+{
+    return a > b ? a : b;
+}
+
 // One allocation of the scene's arena, or a remembered failure.
 typedef struct finish {
     scene_builder *b;
@@ -54,8 +71,8 @@ static void find_bounds(finish *f)
     }
     for (size_t i = 0; i < f->b->positions.count; ++i)
         for (int k = 0; k < 3; ++k) {
-            f->low[k] = fmin(f->low[k], p[i][k]);
-            f->high[k] = fmax(f->high[k], p[i][k]);
+            f->low[k] = p[i][k] < f->low[k] ? p[i][k] : f->low[k];
+            f->high[k] = p[i][k] > f->high[k] ? p[i][k] : f->high[k];
         }
 }
 
@@ -88,7 +105,7 @@ static void round_positions(finish *f)
     if (f->failed) return;
     for (uint32_t i = 0; i < s->position_count; ++i) {
         double to[3];
-        for (int k = 0; k < 3; ++k) to[k] = nearbyint((from[i][k] - s->zone.origin[k]) * steps) * s->step + 0.0;
+        for (int k = 0; k < 3; ++k) to[k] = round_even((from[i][k] - s->zone.origin[k]) * steps) * s->step + 0.0;
         s->positions[i] = (cull_vec3){(float)to[0], (float)to[1], (float)to[2]};
     }
 }
@@ -137,8 +154,8 @@ static cull_box box_of_item(const scene *s, const scene_item *item)
     cull_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
     for (uint32_t i = item->first_index; i < item->first_index + item->index_count; ++i) {
         const cull_vec3 p = s->positions[s->indices[i]];
-        box.min = (cull_vec3){fminf(box.min.x, p.x), fminf(box.min.y, p.y), fminf(box.min.z, p.z)};
-        box.max = (cull_vec3){fmaxf(box.max.x, p.x), fmaxf(box.max.y, p.y), fmaxf(box.max.z, p.z)};
+        box.min = (cull_vec3){lesser(box.min.x, p.x), lesser(box.min.y, p.y), lesser(box.min.z, p.z)};
+        box.max = (cull_vec3){greater(box.max.x, p.x), greater(box.max.y, p.y), greater(box.max.z, p.z)};
     }
     return box;
 }
@@ -155,12 +172,12 @@ static void find_boxes(finish *f)
         const cull_box box = box_of_item(s, &s->items[i]);
         const float values[6] = {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
         for (int k = 0; k < 6; ++k) axes[k][i] = values[k];
-        all.min = (cull_vec3){fminf(all.min.x, box.min.x), fminf(all.min.y, box.min.y), fminf(all.min.z, box.min.z)};
-        all.max = (cull_vec3){fmaxf(all.max.x, box.max.x), fmaxf(all.max.y, box.max.y), fmaxf(all.max.z, box.max.z)};
+        all.min = (cull_vec3){lesser(all.min.x, box.min.x), lesser(all.min.y, box.min.y), lesser(all.min.z, box.min.z)};
+        all.max = (cull_vec3){greater(all.max.x, box.max.x), greater(all.max.y, box.max.y), greater(all.max.z, box.max.z)};
     }
     s->boxes = (cull_boxes){axes[0], axes[1], axes[2], axes[3], axes[4], axes[5]};
     s->zone.box = all;
-    s->zone.radius = fmaxf(fmaxf(fmaxf(-all.min.x, all.max.x), fmaxf(-all.min.y, all.max.y)), fmaxf(-all.min.z, all.max.z));
+    s->zone.radius = greater(greater(greater(-all.min.x, all.max.x), greater(-all.min.y, all.max.y)), greater(-all.min.z, all.max.z));
 }
 
 // Plane ids: planes whose rounded numbers agree are one. Rounding only decides sharing, never a position.

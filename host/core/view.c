@@ -166,7 +166,7 @@ void view_derive(const camera *c, const view_frame *f, const double zone_origin[
                         .reach = sqrt((t + pixel) * (t + pixel) + (wide + pixel) * (wide + pixel) + 1),
                         .radius = (double)cull_box_radius(*zone_box)};
     for (int i = 0; i < 3; i++) {
-        guard.eye[i] = c->eye[i] - zone_origin[i];
+        guard.eye[i] = (c->eye[i] - zone_origin[i]) + 0.0; // never -0
         guard.forward[i] = -back[i];
     }
     memset(view, 0, sizeof *view);

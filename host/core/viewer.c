@@ -28,12 +28,30 @@ static void choose_stages(viewer *v)
     }
 }
 
+static result open_query(viewer *v, uint32_t stage, report *r)
+{
+    const chain_stage *s = &v->chain->stages[stage];
+    cull_query *query = NULL; // not the stage's own: what a failed open leaves there is nothing to close
+    const cull_result code = s->plugin->open(s->culler, &query);
+    if (code == CULL_ERR_MEMORY) return report_no_memory(r, NULL);
+    if (code != CULL_OK || !query)
+        return report_error(r, NULL, 0, "culler '%s' could not open a query (result %d); try another chain", s->plugin->descriptor->id, (int)code);
+    v->stages[stage].query = query;
+    return RESULT_OK;
+}
+
+static result open_queries(viewer *v, report *r)
+{
+    result done = RESULT_OK;
+    for (uint32_t i = 0; i < v->chain->stage_count && done == RESULT_OK; ++i) done = open_query(v, i, r);
+    return done;
+}
+
 static int open_stages(viewer *v)
 {
     const chain *c = v->chain;
     for (uint32_t i = 0; i < c->stage_count; ++i) {
         const cull_built *b = &c->stages[i].built;
-        if (c->stages[i].plugin->open(c->stages[i].culler, &v->stages[i].query) != CULL_OK || !v->stages[i].query) return 0;
         const uint32_t movers = i == v->last && b->takes_movers ? c->zone.mover_capacity : 0;
         v->stages[i].run_capacity = b->max_runs + movers;
         if (c->stages[i].role != ROLE_CROSS && !list_take(&v->stages[i].runs, v->memory, v->stages[i].run_capacity, sizeof(cull_run))) return 0;
@@ -41,6 +59,22 @@ static int open_stages(viewer *v)
         v->slot_count = max_u32(v->slot_count, b->slot_count);
     }
     return 1;
+}
+
+// Stages before the last may give no tests, and those that are not first no pictures: they learn it from the check of
+// what they wrote, so there has to be room for it.
+static int open_early_lists(viewer *v)
+{
+    uint32_t tests = 0, captures = 0, pictures = 0;
+    for (uint32_t i = 0; i < v->last; ++i) {
+        const cull_built *b = &v->chain->stages[i].built;
+        tests = max_u32(tests, b->max_tests);
+        captures = max_u32(captures, b->max_captures);
+        pictures = max_u32(pictures, b->max_pictures);
+    }
+    return list_take(&v->early_tests, v->memory, tests, sizeof(cull_test)) &&
+           list_take(&v->early_captures, v->memory, captures, sizeof(cull_capture)) &&
+           list_take(&v->early_pictures, v->memory, pictures, sizeof(cull_picture));
 }
 
 static int open_lists(viewer *v)
@@ -93,9 +127,11 @@ result viewer_open(const chain *c, const host_services *services, viewer_checks 
     v->checks = VIEWER_CHECK_ALL;
 #endif
     choose_stages(v);
-    if (!open_stages(v) || !open_lists(v)) {
+    result done = open_queries(v, r);
+    if (done == RESULT_OK && (!open_stages(v) || !open_early_lists(v) || !open_lists(v))) done = report_no_memory(r, NULL);
+    if (done != RESULT_OK) {
         viewer_close(v);
-        return report_no_memory(r, NULL);
+        return done;
     }
     v->clock_overhead_ns = clock_overhead_ns();
     *out = v;
@@ -110,7 +146,7 @@ void viewer_close(viewer *v)
         list_close(&v->stages[i].runs, v->memory);
     }
     list *const all[] = {&v->tests, &v->captures, &v->pictures, &v->select_captures, &v->select_pictures, &v->keep_captures,
-                         &v->keep_pictures, &v->answers, &v->movers, &v->mover_runs, &v->seen};
+                         &v->keep_pictures, &v->early_tests, &v->early_captures, &v->early_pictures, &v->answers, &v->movers, &v->mover_runs, &v->seen};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) list_close(all[i], v->memory);
     memory_free(v->memory, v->slots, v->slot_count, 1);
     memory_free(v->memory, v->scratch, v->scratch_size, 1);

@@ -24,6 +24,7 @@ struct viewer {
     uint32_t first;                // the stage that starts: 0, or a filter that walks the hierarchy
     list tests, captures, pictures; // of the stepping stage
     list select_captures, select_pictures, keep_captures, keep_pictures; // of a select behind which a filter stands
+    list early_tests, early_captures, early_pictures; // room for what a stage before the last may not give, so that it harms nobody
     list answers, movers, mover_runs;
     list seen;                     // one bit an item and mover, for VIEWER_CHECK_ALL
     uint8_t *slots;

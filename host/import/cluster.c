@@ -107,6 +107,13 @@ typedef struct cut {
     int axis;
 } cut;
 
+// Among equals, as where polygons lie on each other, halves need the fewest clusters.
+static int is_nearer_middle(uint32_t left_count, uint32_t than, uint32_t count)
+{
+    const int64_t a = 2 * (int64_t)left_count - count, b = 2 * (int64_t)than - count;
+    return (a < 0 ? -a : a) < (b < 0 ? -b : b);
+}
+
 static void find_cut(const splitter *s, range r, int axis, cut *best)
 {
     const uint32_t *order = s->order[axis] + r.first;
@@ -125,7 +132,7 @@ static void find_cut(const splitter *s, range r, int axis, cut *best)
         sum += s->polygons[order[i - 1]].triangles;
         if (i < least) continue;
         const double cost = side_cost(&box, sum) + s->right_costs[i];
-        if (cost < best->cost) *best = (cut){cost, i, axis};
+        if (cost < best->cost || (cost == best->cost && is_nearer_middle(i, best->left_count, r.count))) *best = (cut){cost, i, axis};
     }
 }
 

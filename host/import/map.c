@@ -225,6 +225,7 @@ static result import_with(map_import *i, scene **out)
     const result done = read_all(i);
     if (done != RESULT_OK) return done;
     if (i->reader.entities_read == 0) return report_error(r, path, i->reader.line, "no entity in it; is this a .map file?");
+    if (i->stage.polygons_dropped) report_note(r, "%s: %u faces without area are left out", path, i->stage.polygons_dropped);
     return scene_builder_finish(i->builder, path, r, out);
 }
 

@@ -100,13 +100,15 @@ static map_word peek_word(const map_reader *m)
 
 static result fault(const place *p, const char *expected, const char *advice)
 {
-    const map_word found = peek_word(p->m);
-    const int shown = found.length < SHOWN_BYTES ? (int)found.length : SHOWN_BYTES;
-    const char *quote = p->m->at < p->m->end ? "'" : "";
-    char brush[32] = "";
+    const map_reader *m = p->m;
+    const map_word word = peek_word(m);
+    const int shown = word.length < SHOWN_BYTES ? (int)word.length : SHOWN_BYTES;
+    char brush[32] = "", found[SHOWN_BYTES + 32];
+    if (m->at >= m->end) snprintf(found, sizeof found, "the end of the file");
+    else if (shown == 0) snprintf(found, sizeof found, "the end of the line");
+    else snprintf(found, sizeof found, "'%.*s'", shown, word.text);
     if (p->in_brush) snprintf(brush, sizeof brush, " brush %zu", p->entity->brushes.count - 1);
-    return report_error(p->m->report, p->m->path, p->m->line, "entity %u%s: expected %s, found %s%.*s%s; %s", p->entity->number, brush, expected,
-                        quote, shown, p->m->at < p->m->end ? found.text : "the end of the file", quote, advice);
+    return report_error(m->report, m->path, m->line, "entity %u%s: expected %s, found %s; %s", p->entity->number, brush, expected, found, advice);
 }
 
 static int take_char(map_reader *m, char c)

@@ -13,7 +13,7 @@
 static const double FLAT_SHARE = 1.0 / ((uint64_t)1 << 49);
 
 typedef struct kept_polygon {
-    uint32_t material; // the soup's
+    uint32_t material; // the builder's
     uint32_t first_triangle, triangle_count;
     uint32_t group; // of the object's materials
 } kept_polygon;
@@ -31,6 +31,7 @@ typedef struct scene_maker {
     double flat_m;
     triangulator triangulator;
     uint32_t *local_of; // a soup position: the object's vertex, or UINT32_MAX
+    uint32_t *materials; // the soup's: the builder's, or UINT32_MAX
 
     // Of the object at hand; kept from object to object for their memory.
     buffer positions;     // 3 doubles
@@ -68,6 +69,7 @@ static void maker_close(scene_maker *m)
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) buffer_free(all[i]);
     triangulator_free(&m->triangulator);
     memory_free(m->memory, m->local_of, m->soup->positions.count, sizeof *m->local_of);
+    memory_free(m->memory, m->materials, m->soup->materials.count, sizeof *m->materials);
     scene_builder_close(m->builder);
 }
 
@@ -112,21 +114,31 @@ static result gather_corners(scene_maker *m, const soup_polygon *p)
     return RESULT_OK;
 }
 
+// The same name may be used again and again: it is one material.
+static result find_material(scene_maker *m, uint32_t of_soup)
+{
+    const soup_name *name = (const soup_name *)m->soup->materials.items + of_soup;
+    if (m->materials[of_soup] != UINT32_MAX) return RESULT_OK;
+    return scene_builder_material(m->builder, name->text, name->length, 0, &m->materials[of_soup]);
+}
+
 static result gather_polygon(scene_maker *m, const soup_polygon *p)
 {
     const uint32_t first_corner = (uint32_t)m->corners.count;
     const size_t first_index = m->triangles.count;
     if (gather_corners(m, p) != RESULT_OK) return RESULT_NO_MEMORY;
-    const result done = polygon_triangulate(&m->triangulator, (const double(*)[3])m->points.items, (uint32_t)m->points.count, m->flat_m, &m->triangles);
+    result done = polygon_triangulate(&m->triangulator, (const double(*)[3])m->points.items, (uint32_t)m->points.count, m->flat_m, &m->triangles);
     if (done != RESULT_OK) return done;
     if (m->triangles.count == first_index) {
         m->corners.count = m->texcoords.count = first_corner;
         m->dropped++;
         return RESULT_OK;
     }
+    done = find_material(m, p->material);
+    if (done != RESULT_OK) return done;
     uint32_t *indices = m->triangles.items;
     for (size_t i = first_index; i < m->triangles.count; ++i) indices[i] += first_corner;
-    const kept_polygon kept = {p->material, (uint32_t)(first_index / 3), (uint32_t)((m->triangles.count - first_index) / 3), 0};
+    const kept_polygon kept = {m->materials[p->material], (uint32_t)(first_index / 3), (uint32_t)((m->triangles.count - first_index) / 3), 0};
     const uint32_t end = (uint32_t)m->corners.count;
     return buffer_append(&m->polygons, &kept, 1) && buffer_append(&m->polygon_first, &end, 1) ? RESULT_OK : RESULT_NO_MEMORY;
 }
@@ -147,8 +159,8 @@ static result gather_object(scene_maker *m, uint32_t first, uint32_t count)
 
 // ---- Materials of an object ----
 
-// Numbers the object's materials in order of appearance; `soup_materials` lists them.
-static result group_by_material(scene_maker *m, arena *scratch, uint32_t **soup_materials, uint32_t *group_count)
+// Numbers the object's materials in order of appearance; `materials` lists them.
+static result group_by_material(scene_maker *m, arena *scratch, uint32_t **materials, uint32_t *group_count)
 {
     kept_polygon *polygons = m->polygons.items;
     const size_t count = m->polygons.count;
@@ -167,7 +179,7 @@ static result group_by_material(scene_maker *m, arena *scratch, uint32_t **soup_
         }
         polygons[i].group = slots[at] - 1;
     }
-    *soup_materials = found;
+    *materials = found;
     return RESULT_OK;
 }
 
@@ -302,10 +314,8 @@ static result make_groups(scene_maker *m, uint32_t object, const mesh_output *me
     // A mesh with a boundary shows its back faces through the opening.
     const uint32_t flags = mesh->boundary_edges ? CULL_ITEM_TWO_SIDED : 0;
     for (uint32_t i = 0; i < group_count && done == RESULT_OK; ++i) {
-        const soup_name *name = (const soup_name *)m->soup->materials.items + materials[i];
-        item_group g = {.mesh = mesh, .polygons = order + starts[i], .count = starts[i + 1] - starts[i], .object = object, .flags = flags};
-        done = scene_builder_material(m->builder, name->text, name->length, 0, &g.material);
-        if (done == RESULT_OK) done = emit_group(m, &g);
+        item_group g = {.mesh = mesh, .polygons = order + starts[i], .count = starts[i + 1] - starts[i], .object = object, .material = materials[i], .flags = flags};
+        done = emit_group(m, &g);
     }
     return done;
 }
@@ -360,8 +370,10 @@ static void report_repairs(const scene_maker *m)
 static result make_scene(scene_maker *m, scene **out)
 {
     m->local_of = memory_alloc(m->memory, m->soup->positions.count, sizeof *m->local_of);
-    if (!m->local_of || scene_builder_open(m->memory, &m->builder) != RESULT_OK) return report_no_memory(m->report, m->path);
+    m->materials = memory_alloc(m->memory, m->soup->materials.count, sizeof *m->materials);
+    if (!m->local_of || !m->materials || scene_builder_open(m->memory, &m->builder) != RESULT_OK) return report_no_memory(m->report, m->path);
     memset(m->local_of, 0xff, m->soup->positions.count * sizeof *m->local_of);
+    memset(m->materials, 0xff, m->soup->materials.count * sizeof *m->materials);
     m->flat_m = flat_height(m->soup);
     const result done = make_objects(m);
     if (done == RESULT_NO_MEMORY) return report_no_memory(m->report, m->path);

@@ -163,18 +163,26 @@ static int same_place(const double a[2], const double b[2])
     return a[0] == b[0] && a[1] == b[1];
 }
 
+// How far a point may seem to lie outside an edge that it lies on: flat_m, in the unit of turn().
+static double edge_slack(const clipping *c, uint32_t i, uint32_t j)
+{
+    const double x = c->flat[j][0] - c->flat[i][0], y = c->flat[j][1] - c->flat[i][1];
+    return -c->flat_m * sqrt(x * x + y * y);
+}
+
 static int is_ear(const clipping *c, uint32_t i)
 {
     if (!is_convex(c, i)) return 0;
     const uint32_t p = c->ring[i].previous, n = c->ring[i].next;
     const double *a = c->flat[p], *b = c->flat[i], *d = c->flat[n];
-    const double low = fmin(a[0], fmin(b[0], d[0])), high = fmax(a[0], fmax(b[0], d[0]));
+    const double before = edge_slack(c, p, i), behind = edge_slack(c, i, n), across = edge_slack(c, n, p);
+    const double low = fmin(a[0], fmin(b[0], d[0])) - c->flat_m, high = fmax(a[0], fmax(b[0], d[0])) + c->flat_m;
     for (size_t o = first_obstacle(c, low); o < c->obstacle_count && c->obstacles[o].x <= high; ++o) {
         const uint32_t q = c->obstacles[o].vertex;
         if (c->ring[q].is_gone || q == p || q == i || q == n) continue;
         const double *at = c->flat[q];
         if (same_place(at, a) || same_place(at, b) || same_place(at, d)) continue; // a slit to a hole touches itself
-        if (turn(c, p, i, q) >= 0 && turn(c, i, n, q) >= 0 && turn(c, n, p, q) >= 0) return 0;
+        if (turn(c, p, i, q) >= before && turn(c, i, n, q) >= behind && turn(c, n, p, q) >= across) return 0;
     }
     return 1;
 }

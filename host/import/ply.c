@@ -94,9 +94,9 @@ static result read_list(ply_reader *p, const ply_property *property)
     double count, skipped;
     result done = read_value(p, property->count_type, &count);
     if (done != RESULT_OK) return done;
-    if (!(count >= 0) || (double)(uint64_t)count != count) return fault(p, "a list's length is negative or no integer; correct it");
+    if (!(count >= 0 && count <= UINT32_MAX) || (double)(uint32_t)count != count) return fault(p, "a list's length is no integer from 0 to 2^32 - 1; correct it");
     if (property->role == PLY_CORNERS) return read_corners(p, property, count);
-    for (uint64_t i = 0; i < (uint64_t)count && done == RESULT_OK; ++i) done = read_value(p, property->type, &skipped);
+    for (uint32_t i = 0; i < (uint32_t)count && done == RESULT_OK; ++i) done = read_value(p, property->type, &skipped);
     return done;
 }
 
@@ -121,6 +121,7 @@ static result read_elements(ply_reader *p)
     const ply_element *elements = p->header.elements.items;
     for (size_t i = 0; i < p->header.elements.count; ++i)
         if (elements[i].kind == PLY_VERTEX) p->vertices += elements[i].count;
+    if (p->vertices > UINT32_MAX) return fault(p, "over 2^32 vertices; split the file");
     for (size_t i = 0; i < p->header.elements.count; ++i) {
         if (elements[i].property_count == 0) continue; // nothing is written of it
         for (uint64_t k = 0; k < elements[i].count; ++k) {

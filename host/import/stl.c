@@ -1,4 +1,4 @@
-// Reader of .stl, ascii and binary: checked here, because OpenMesh takes any bytes for numbers, then read by OpenMesh.
+// Reader of .stl: checked here, because OpenMesh takes any bytes for numbers; ascii is made binary; then OpenMesh reads it.
 // SPDX-License-Identifier: MIT
 #include "../core/file.h"
 #include "../mesh/mesh.h"
@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { STL_HEAD_BYTES = 84, STL_TRIANGLE_BYTES = 50, STL_NORMAL_BYTES = 12 };
+enum { STL_TITLE_BYTES = 80, STL_HEAD_BYTES = 84, STL_TRIANGLE_BYTES = 50, STL_NORMAL_BYTES = 12 };
 
 static uint32_t little32(const char *bytes)
 {
@@ -18,7 +18,7 @@ static uint32_t little32(const char *bytes)
 
 static int is_binary(const char *bytes, size_t size)
 {
-    return size >= STL_HEAD_BYTES && size == STL_HEAD_BYTES + (size_t)STL_TRIANGLE_BYTES * little32(bytes + 80);
+    return size >= STL_HEAD_BYTES && size == STL_HEAD_BYTES + (size_t)STL_TRIANGLE_BYTES * little32(bytes + STL_TITLE_BYTES);
 }
 
 static result check_binary(const char *path, const char *bytes, size_t size, report *r)
@@ -40,34 +40,50 @@ static int word_is(const char *word, size_t length, const char *text)
     return length == strlen(text) && memcmp(word, text, length) == 0;
 }
 
-// The lines that OpenMesh's reader looks for, in the order in which it takes them for granted.
-static result check_loop(mesh_text *t)
+static void put_little32(char *bytes, uint32_t value)
+{
+    for (int k = 0; k < 4; ++k) bytes[k] = (char)(unsigned char)(value >> (8 * k));
+}
+
+// The three vertex lines behind "outer loop", appended as a binary triangle without a normal.
+static result read_loop(mesh_text *t, buffer *binary)
 {
     const char *word;
     double p[3];
-    for (int i = 0; i < 3; ++i) {
-        text_next_line(t);
-        const size_t length = text_word(t, &word);
-        if (length == 0 || !word_is(word, length, "vertex")) return report_error(t->report, t->path, t->line, "not the vertex that an outer loop goes on with; is the file whole?");
-        const result done = text_position(t, "vertex", p);
-        if (done != RESULT_OK) return done;
-        if (!text_line_ended(t)) return report_error(t->report, t->path, t->line, "vertex: more than 3 coordinates; write x y z");
+    char triangle[STL_TRIANGLE_BYTES] = {0};
+    for (int i = 0; i < 9; ++i) {
+        if (i % 3 == 0) {
+            text_next_line(t);
+            const size_t length = text_word(t, &word);
+            if (length == 0 || !word_is(word, length, "vertex"))
+                return report_error(t->report, t->path, t->line, "not the vertex that an outer loop goes on with; is the file whole?");
+            const result done = text_position(t, "vertex", p);
+            if (done != RESULT_OK) return done;
+            if (!text_line_ended(t)) return report_error(t->report, t->path, t->line, "vertex: more than 3 coordinates; write x y z");
+        }
+        const float value = (float)p[i % 3];
+        uint32_t bits;
+        memcpy(&bits, &value, sizeof bits);
+        put_little32(triangle + STL_NORMAL_BYTES + 4 * i, bits);
     }
-    return RESULT_OK;
+    return buffer_append(binary, triangle, STL_TRIANGLE_BYTES) ? RESULT_OK : report_no_memory(t->report, t->path);
 }
 
-static result check_ascii(mesh_text t)
+static result read_ascii(mesh_text t, buffer *binary)
 {
+    static const char head[STL_HEAD_BYTES] = {0};
     const char *word = NULL;
     size_t length = text_word(&t, &word);
     if (length == 0 || !word_is(word, length, "solid")) return report_error(t.report, t.path, 1, "neither begins with solid nor has the size of a binary .stl; is the file whole?");
+    if (!buffer_append(binary, head, STL_HEAD_BYTES)) return report_no_memory(t.report, t.path);
     for (text_next_line(&t); !text_ended(&t); text_next_line(&t)) {
         length = text_word(&t, &word);
         if (text_is_noise(&t)) return report_error(t.report, t.path, t.line, "a byte that no text has; is this an .stl file?");
         if (length == 0 || !word_is(word, length, "outer")) continue;
-        const result done = check_loop(&t);
+        const result done = read_loop(&t, binary);
         if (done != RESULT_OK) return done;
     }
+    put_little32((char *)binary->items + STL_TITLE_BYTES, (uint32_t)((binary->count - STL_HEAD_BYTES) / STL_TRIANGLE_BYTES));
     return RESULT_OK;
 }
 
@@ -88,14 +104,16 @@ static result read_soup(mesh_soup *soup, const char *path, const char *bytes, si
 {
     double *triangles;
     uint32_t count = 0;
-    const stl_form form = is_binary(bytes, size) ? STL_BINARY : STL_ASCII;
-    result done = form == STL_BINARY ? check_binary(path, bytes, size, r) : check_ascii(text_make(path, bytes, size, r));
-    if (done != RESULT_OK) return done;
+    buffer binary = buffer_make(memory, 1);
     arena scratch = arena_make(memory);
-    done = mesh_read_stl(path, bytes, size, form, &scratch, r, &triangles, &count);
-    if (done == RESULT_OK && count == 0) done = report_error(r, path, 0, "no facets; is it an .stl file?");
+    const int was_binary = is_binary(bytes, size);
+    result done = was_binary ? check_binary(path, bytes, size, r) : read_ascii(text_make(path, bytes, size, r), &binary);
+    if (done == RESULT_OK && was_binary) done = mesh_read_stl(path, bytes, size, &scratch, r, &triangles, &count);
+    if (done == RESULT_OK && !was_binary) done = mesh_read_stl(path, binary.items, binary.count, &scratch, r, &triangles, &count);
+    if (done == RESULT_OK && count == 0) done = report_error(r, path, 0, "no facets with area; is it an .stl file?");
     if (done == RESULT_OK && fill_soup(soup, path, triangles, count) != RESULT_OK) done = report_no_memory(r, path);
     arena_free(&scratch);
+    buffer_free(&binary);
     return done;
 }
 

@@ -1,4 +1,5 @@
-// Automatic views auto:N: from a map's point entities that stand in air, else spread over the scene.
+// Automatic views auto:N: from a map's point entities that stand in air, else spread over the scene: among boxes, on
+// and over ground, within and around a model.
 // SPDX-License-Identifier: MIT
 #include "views_auto.h"
 
@@ -110,7 +111,7 @@ static double diagonal_of(const auto_views *a)
     return sqrt(x * x + y * y + z * z);
 }
 
-static int is_ground(const auto_views *a)
+int auto_is_ground(const auto_views *a)
 {
     const double height = a->high[1] - a->low[1];
     return height > AUTO_EYE_HEIGHT_M && height < FLAT_SCENE * fmax(a->high[0] - a->low[0], a->high[2] - a->low[2]);
@@ -123,14 +124,22 @@ static int is_free(const auto_views *a, const double at[3])
     return a->has_boxes || a->scene->is_map || !free_space_is_enclosed(a->space, at);
 }
 
-// Half of the eyes over ground stand on it (its lowest place: the scene's), the others anywhere up to its top.
+// Boxes stand on the lowest place of their scene; a mesh has ground where it says so, and none beyond its edge.
+static int stand(const auto_views *a, double at[3], uint32_t i)
+{
+    const int on_ground = i % 2 == 0; // the other half of the eyes is anywhere over it
+    if (!auto_is_ground(a)) return 1;
+    const double height = a->has_boxes || a->scene->is_map ? at[1] - a->low[1] : free_space_ground(a->space, at);
+    if (on_ground) at[1] += AUTO_EYE_HEIGHT_M - height;
+    return isfinite(height);
+}
+
 eye auto_spread_eye(auto_views *a, uint32_t i)
 {
     eye e = {{0}};
     for (int tries = 0; tries < SPREAD_TRIES; ++tries) {
         for (int k = 0; k < 3; ++k) e.at[k] = random_between(&a->random, a->low[k], a->high[k]);
-        if (i % 2 == 0 && is_ground(a)) e.at[1] = a->low[1] + AUTO_EYE_HEIGHT_M;
-        if (is_free(a, e.at)) return e;
+        if (stand(a, e.at, i) && is_free(a, e.at)) return e;
     }
     for (int k = 0; k < 3; ++k) e.at[k] = (a->low[k] + a->high[k]) / 2; // no room within: over it there is
     e.at[1] = a->high[1] + fmax(AUTO_EYE_HEIGHT_M, diagonal_of(a) / 4);
@@ -149,8 +158,11 @@ static double way_out(const auto_views *a, const double at[3], const double way[
     return isfinite(least) ? least : 0;
 }
 
-// From outside of a model: back from a place in its middle half, out of its bounds, within those half as large again.
-static int outside_camera(auto_views *a, double yaw, camera *out)
+typedef enum side { WITHIN_BOUNDS, OUT_OF_BOUNDS } side;
+
+// Of a mesh: back from a place in its middle half, to somewhere within its bounds, or out of them and within those half
+// as large again. So the yaw is anyone's, and yet the view looks across the mesh.
+static int mesh_camera(auto_views *a, double yaw, side where, camera *out)
 {
     for (int tries = 0; tries < SPREAD_TRIES; ++tries) {
         const double pitch = random_pitch(&a->random);
@@ -160,9 +172,10 @@ static int outside_camera(auto_views *a, double yaw, camera *out)
             at[k] = random_between(&a->random, 0.75 * a->low[k] + 0.25 * a->high[k], 0.25 * a->low[k] + 0.75 * a->high[k]);
             back[k] = -back[k];
         }
-        const double way = random_between(&a->random, way_out(a, at, back, 0), way_out(a, at, back, 0.5));
+        const double edge = way_out(a, at, back, 0), from = where == WITHIN_BOUNDS ? 0 : edge;
+        const double way = random_between(&a->random, from, where == WITHIN_BOUNDS ? edge : way_out(a, at, back, 0.5));
         for (int k = 0; k < 3; ++k) at[k] += way * back[k];
-        if ((is_ground(a) && at[1] < a->low[1] + AUTO_EYE_HEIGHT_M) || !is_free(a, at)) continue;
+        if ((auto_is_ground(a) && at[1] < a->low[1] + AUTO_EYE_HEIGHT_M) || !is_free(a, at)) continue;
         *out = auto_camera(a, at, yaw, pitch);
         return 1;
     }
@@ -172,11 +185,12 @@ static int outside_camera(auto_views *a, double yaw, camera *out)
 result auto_views_make(auto_views *a, uint32_t count, camera *cameras)
 {
     const eye *places = a->places.items;
+    const int is_mesh = !a->scene->is_map && !a->has_boxes, is_ground = auto_is_ground(a);
     for (uint32_t i = 0; i < count; ++i) {
         const double yaw = random_between(&a->random, -PI, PI);
-        const int is_outside = !a->scene->is_map && !a->has_boxes && i % 2 == 1;
-        if (is_outside && outside_camera(a, yaw, &cameras[i])) continue;
-        const eye e = a->places.count ? places[i % a->places.count] : auto_spread_eye(a, i / 2);
+        if (is_mesh && i % 2 == 1 && mesh_camera(a, yaw, OUT_OF_BOUNDS, &cameras[i])) continue;
+        if (is_mesh && i % 2 == 0 && !is_ground && mesh_camera(a, yaw, WITHIN_BOUNDS, &cameras[i])) continue;
+        const eye e = a->places.count ? places[i % a->places.count] : auto_spread_eye(a, is_mesh ? i / 2 : i);
         cameras[i] = auto_camera(a, e.at, yaw, random_pitch(&a->random));
     }
     return RESULT_OK;

@@ -30,6 +30,7 @@ typedef struct auto_views {
 result auto_views_open(const scene *s, double aspect, const allocator *memory, report *r, auto_views *out);
 void auto_views_close(auto_views *a);
 camera auto_camera(const auto_views *a, const double eye[3], double yaw, double pitch);
+int auto_is_ground(const auto_views *a); // 1 for a wide low scene, to stand on; 0 for a model
 // A place spread over the scene: number i of any count. Never fails: over the scene there is room.
 eye auto_spread_eye(auto_views *a, uint32_t i);
 

@@ -347,3 +347,9 @@ int free_space_is_enclosed(const free_space *space, const double p[3])
         }
     return backs > fronts;
 }
+
+double free_space_ground(const free_space *space, const double p[3])
+{
+    const axis_hit hit = first_hit(space, p, (axis_ray){1, -1});
+    return hit.is_back ? INFINITY : hit.distance;
+}

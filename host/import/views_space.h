@@ -24,4 +24,7 @@ double free_space_clearance(const free_space *space, const double p[3], double m
 // under the ground.
 int free_space_is_enclosed(const free_space *space, const double p[3]);
 
+// How far below p the front of a triangle is the first thing met: ground to stand on. INFINITY where it isn't.
+double free_space_ground(const free_space *space, const double p[3]);
+
 #endif

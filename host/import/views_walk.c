@@ -28,7 +28,7 @@ static const double LOOK_PART = 0.25;       // of the way to the heading that th
 static const double PITCH_MOST_DEG = 15, PITCH_TURN_DEG = 0.5;
 static const uint32_t PITCH_FRAMES = 50;    // a new pitch is wanted this often
 static const uint32_t WHIM_FRAMES = 60;     // a new side is preferred this often
-static const double REGION_MOST_M = 32, REGION_LEAST_M = 4; // how far round an open scene's bounds one may walk
+static const double REGION_MOST_M = 32, REGION_LEAST_M = 4; // how far round a model one may walk
 
 typedef struct visit_cell { int32_t x, y, z; uint32_t count; } visit_cell;
 
@@ -265,19 +265,20 @@ static void bound_region(walker *w)
     const auto_views *a = w->a;
     double widest = 0;
     for (int k = 0; k < 3; ++k) widest = fmax(widest, a->high[k] - a->low[k]);
-    const double margin = a->scene->is_map ? 0 : fmax(REGION_LEAST_M, fmin(REGION_MOST_M, widest / 4));
+    const double margin = a->scene->is_map || auto_is_ground(a) ? 0 : fmax(REGION_LEAST_M, fmin(REGION_MOST_M, widest / 4));
     for (int k = 0; k < 3; ++k) {
         w->low[k] = a->low[k] - margin;
         w->high[k] = a->high[k] + margin;
     }
 }
 
-// Open scenes: at eye height over the lowest place, or half way up what is lower than a person.
+// Models: anywhere around, at eye height over the lowest place, or half way up what is lower than a person.
 static eye start_of(walker *w, uint32_t i)
 {
     auto_views *a = w->a;
     if (a->places.count) return ((const eye *)a->places.items)[i % a->places.count];
     if (a->scene->is_map) return auto_spread_eye(a, i);
+    if (auto_is_ground(a)) return auto_spread_eye(a, 0); // on it
     eye e;
     for (int k = 0; k < 3; ++k) e.at[k] = random_between(&a->random, w->low[k], w->high[k]);
     e.at[1] = fmin(a->low[1] + AUTO_EYE_HEIGHT_M, (a->low[1] + a->high[1]) / 2);

@@ -449,14 +449,15 @@ public:
     void add_texture_information(int, std::string) override {}
 };
 
-result read_stl(const char *bytes, size_t size, stl_form form, arena *memory, double **out_triangles, uint32_t *out_count)
+result read_stl(const char *bytes, size_t size, arena *memory, double **out_triangles, uint32_t *out_count)
 {
     silence_openmesh();
     memory_buffer buffer(bytes, size);
     std::istream stream(&buffer);
+    stream.exceptions(std::ios::badbit); // else a stream turns std::bad_alloc into a short file
     triangle_list list;
     OpenMesh::IO::Options options;
-    if (form == STL_BINARY) options += OpenMesh::IO::Options::Binary;
+    options += OpenMesh::IO::Options::Binary;
     if (!OpenMesh::IO::STLReader().read(stream, list, options)) return RESULT_BAD_INPUT;
     double *triangles = take<double>(memory, 3 * list.corners.size());
     for (size_t c = 0; c < list.corners.size(); ++c)
@@ -478,11 +479,11 @@ extern "C" result mesh_repair(const mesh_input *in, arena *memory, mesh_output *
     }
 }
 
-extern "C" result mesh_read_stl(const char *path, const char *bytes, size_t size, stl_form form, arena *memory, report *r, double **out_triangles,
+extern "C" result mesh_read_stl(const char *path, const char *bytes, size_t size, arena *memory, report *r, double **out_triangles,
                                 uint32_t *out_count)
 {
     try {
-        const result done = read_stl(bytes, size, form, memory, out_triangles, out_count);
+        const result done = read_stl(bytes, size, memory, out_triangles, out_count);
         return done == RESULT_OK ? done : report_error(r, path, 0, "OpenMesh cannot read it; is this an .stl file?");
     } catch (...) {
         return report_no_memory(r, path);

@@ -39,10 +39,9 @@ typedef struct mesh_output {
 // [any thread] Deterministic. RESULT_NO_MEMORY, unreported, when the arena, or operator new, fails.
 result mesh_repair(const mesh_input *in, arena *memory, mesh_output *out);
 
-// .stl from its bytes by OpenMesh's own reader: triangles, 9 doubles each, in the arena. Its values must have been checked.
-typedef enum stl_form { STL_ASCII, STL_BINARY } stl_form;
-result mesh_read_stl(const char *path, const char *bytes, size_t size, stl_form form, arena *memory, report *r, double **out_triangles,
-                     uint32_t *out_count);
+// A binary .stl, from bytes whose size fits their count and whose values were checked, by OpenMesh's own reader: triangles,
+// 9 doubles each, in the arena. (Its ascii reader takes anything for a number, and a failed allocation for 0.)
+result mesh_read_stl(const char *path, const char *bytes, size_t size, arena *memory, report *r, double **out_triangles, uint32_t *out_count);
 
 #ifdef __cplusplus
 }

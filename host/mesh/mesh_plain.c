@@ -53,12 +53,10 @@ result mesh_repair(const mesh_input *in, arena *memory, mesh_output *out)
     return RESULT_OK;
 }
 
-result mesh_read_stl(const char *path, const char *bytes, size_t size, stl_form form, arena *memory, report *r, double **out_triangles,
-                     uint32_t *out_count)
+result mesh_read_stl(const char *path, const char *bytes, size_t size, arena *memory, report *r, double **out_triangles, uint32_t *out_count)
 {
     (void)bytes;
     (void)size;
-    (void)form;
     (void)memory;
     (void)out_triangles;
     (void)out_count;

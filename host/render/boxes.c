@@ -2,19 +2,15 @@
 // SPDX-License-Identifier: MIT
 // Counts in a storage buffer instead of GL's occlusion queries: one draw for 2,048 boxes, not one each; 1.2 us a box
 // against 7 us on llvmpipe, where each query's begin and end visits every tile.
-// Invariant: an item that owns a pixel passes: the box covers every pixel centre that the item covers, at its depth or
-// nearer, whatever the driver rounds.
+// Invariant: an item that owns a pixel of the id picture passes, whatever the driver rounds: the box covers every pixel
+// centre that the item covers, its depth errs towards the eye, and that of what is drawn errs away from it (state.c, id.frag).
 #include "gl.h"
 
 #include <math.h>
 
 static const double BOX_WIDEN = 0x1p-20;      // of the distance to the eye: the guard band
 static const double BOX_WIDEN_PX = 1.0 / 256; // pixels: item and box corners are each moved up to 1/512 to the raster's grid
-// Depth of a flat item and of its box's face differ by rounding: of corners to 1/256 pixel, so 1/64 of the slope a pixel
-// holds both faces' and the error of evaluating planes 5,120 pixels wide; and by steps of the depth itself.
-static const float BOX_DEPTH_SLOPE = 1.0f / 64;
-static const float BOX_DEPTH_STEPS = 16;
-static const double NEAR_MARGIN = 0x1p-10;    // of the near distance: the raster's own clipping is that exact by far
+static const double NEAR_MARGIN = 0x1p-10; // of the near distance: the raster's own clipping is that exact by far
 
 static const uint8_t BOX_FACES[36] = { // corner bits: x 1, y 2, z 4; counterclockwise from outside
     0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6,
@@ -120,11 +116,7 @@ void boxes_begin(renderer *g, const viewpoint *v, GLuint counts)
     if (!b->program) return;
     state_program(g, b->program);
     state_vertices(g, b->vertices);
-    // A closed surface covers each pixel as often from the front as from behind, however its corners are rounded, and the
-    // eye is outside the box: front faces are enough, and are half the fragments.
-    state_pass(g, &(pass_state){GL_GEQUAL, DEPTH_OFF, COLOUR_OFF, BLEND_NONE, BACK_CULLED});
-    glEnable(GL_POLYGON_OFFSET_FILL);
-    glPolygonOffset(BOX_DEPTH_SLOPE, BOX_DEPTH_STEPS); // nearer: larger, in reversed z
+    state_pass(g, &(pass_state){GL_GEQUAL, DEPTH_OFF, COLOUR_OFF, BLEND_NONE, BACK_DRAWN, OFFSET_NEARER});
     glProgramUniformMatrix4fv(b->program, AT_CLIP_FROM_EYE, 1, GL_FALSE, v->clip);
 }
 
@@ -153,6 +145,5 @@ void boxes_add(renderer *g, const eye_box *box)
 void boxes_end(renderer *g)
 {
     draw_staged(g);
-    glDisable(GL_POLYGON_OFFSET_FILL);
     glMemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
 }

@@ -139,7 +139,7 @@ static void show_slot(renderer *g, const picture_slot *s, const viewpoint *v)
     }
     state_program(g, program);
     state_vertices(g, g->pictures.vertices);
-    state_pass(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, BACK_DRAWN});
+    state_pass(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, BACK_DRAWN, OFFSET_NONE});
     glProgramUniformMatrix4fv(program, AT_CLIP_FROM_EYE, 1, GL_FALSE, v->clip);
     glProgramUniform3fv(program, 1, 1, corner);
     glProgramUniform3fv(program, 2, 1, right);

@@ -21,7 +21,7 @@ void frame_state_pass(renderer *g, blend blend, depth_writes depth)
     const int culled = q->faces == FACES_FRONT && !g->scene.has_two_sided;
     const int added = q->mode == RENDER_OVERDRAW;
     state_pass(g, &(pass_state){added ? GL_ALWAYS : GL_GREATER, added ? DEPTH_OFF : depth, COLOUR_ON, added ? BLEND_ADD : blend,
-                                culled && depth == DEPTH_ON ? BACK_CULLED : BACK_DRAWN});
+                                culled && depth == DEPTH_ON ? BACK_CULLED : BACK_DRAWN, OFFSET_FARTHER});
 }
 
 void frame_uniforms(renderer *g, const draw_pass *p, GLuint program, uint32_t wanted)
@@ -60,7 +60,7 @@ static void bind_blocks(renderer *g)
 static void clear(renderer *g)
 {
     const GLfloat far = 0, none[4] = {0};
-    state_pass(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, BACK_DRAWN});
+    state_pass(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, BACK_DRAWN, OFFSET_NONE});
     glClearBufferfv(GL_COLOR, 0, g->frame.request.mode == RENDER_SHADED ? BACKGROUND : none);
     glClearBufferfv(GL_DEPTH, 0, &far);
 }
@@ -127,7 +127,7 @@ static void draw_heat(renderer *g)
     state_framebuffer(g, t->framebuffer, t->width_px, t->height_px);
     state_program(g, program);
     state_vertices(g, g->scene.vertices); // a core context draws nothing without one
-    state_pass(g, &(pass_state){GL_ALWAYS, DEPTH_OFF, COLOUR_ON, BLEND_NONE, BACK_DRAWN});
+    state_pass(g, &(pass_state){GL_ALWAYS, DEPTH_OFF, COLOUR_ON, BLEND_NONE, BACK_DRAWN, OFFSET_NONE});
     glBindTextureUnit(0, g->frame.layers->colour);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     g->frame.draw_calls++;

@@ -69,6 +69,7 @@ typedef enum blend { BLEND_NONE, BLEND_MIX, BLEND_ADD } blend;
 typedef enum colour_writes { COLOUR_ON, COLOUR_OFF } colour_writes;
 typedef enum depth_writes { DEPTH_ON, DEPTH_OFF } depth_writes;
 typedef enum back_faces { BACK_DRAWN, BACK_CULLED } back_faces;
+typedef enum depth_offset { OFFSET_NONE, OFFSET_FARTHER, OFFSET_NEARER } depth_offset;
 
 typedef struct gl_state {
     GLuint program, vertices, framebuffer;
@@ -78,6 +79,7 @@ typedef struct gl_state {
     colour_writes colour;
     blend blend;
     back_faces back;
+    depth_offset offset;
     uint32_t known; // 0: nothing of it is set yet
 } gl_state;
 
@@ -91,6 +93,7 @@ typedef struct pass_state {
     colour_writes colour;
     blend blend;
     back_faces back;
+    depth_offset offset;
 } pass_state;
 void state_pass(renderer *g, const pass_state *p);
 
@@ -129,13 +132,13 @@ void ranges_draw(renderer *g, ranges *a); // one draw call, then empty
 typedef struct scene_gpu {
     const scene *scene; // NULL: none
     GLuint vertices;    // vertex array, with the index buffer in the scene's order
-    GLuint positions, words, triangles, texcoords, normals, elements;
+    GLuint positions, words, triangles, texcoords, normals, others, elements;
     GLuint materials, two_sided, triangle_items, seen;
     uint32_t *indices;         // each triangle turned so that its last vertex is its own
     uint32_t *see_through;     // items with translucent triangles, ascending
     uint8_t *is_see_through;   // per item
     uint32_t see_through_count;
-    uint32_t triangle_count, item_total; // movers too
+    uint32_t index_count, triangle_count, item_total; // movers too
     uint32_t variant;          // VARIANT_CUT_OUT, VARIANT_TRANSLUCENT as the scene needs
     uint32_t has_two_sided;    // an opaque triangle of a two-sided item
     uint32_t *box_items;       // item_total: scratch of the floor
@@ -254,7 +257,7 @@ struct render_layout {
     uint32_t *order;           // NULL: as the scene stands
     uint32_t *first_index;     // of each place, movers behind; one more at the end
     uint32_t *see_through;     // places before this one that are; NULL: none is
-    uint32_t total;            // places, movers too
+    uint32_t total, item_count; // places with and without movers
 };
 
 // ---- Pictures (capture.c) ----

@@ -55,13 +55,14 @@ static void add_wanted(scene_gpu *p, const uint32_t *bits)
 static void draw_opaque(renderer *g, const viewpoint *v, const id_request *q)
 {
     scene_gpu *p = &g->scene;
-    // With two-sided items about, back faces are dropped by fragments: two kinds of draws in turn would cost a draw a change.
-    const int by_fragment = q->faces == FACES_FRONT && p->has_two_sided;
-    const GLuint program = program_find(g, PROGRAM_ID, p->variant | (by_fragment ? VARIANT_SIDES : 0));
+    // Back faces are dropped by fragments, not by GL_CULL_FACE: llvmpipe culls a triangle by its sense before rounding to the
+    // raster's grid when another one near it needs clipping, by its sense after rounding otherwise. Slivers came and went.
+    const uint32_t sides = q->faces == FACES_FRONT ? VARIANT_SIDES : 0;
+    const GLuint program = program_find(g, PROGRAM_ID, p->variant | sides);
     if (!program) return;
     state_program(g, program);
     viewpoint_set(v, program, 0);
-    state_pass(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, q->faces == FACES_FRONT && !by_fragment ? BACK_CULLED : BACK_DRAWN});
+    state_pass(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, BACK_DRAWN, OFFSET_NONE});
     add_wanted(p, q->item_bits);
     ranges_draw(g, &p->ranges);
 }
@@ -75,7 +76,7 @@ static void draw_see_through(renderer *g, const viewpoint *v, const id_request *
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_COUNTS, p->seen);
     state_program(g, program);
     viewpoint_set(v, program, WORD_TRANSLUCENT);
-    state_pass(g, &(pass_state){GL_GREATER, DEPTH_OFF, COLOUR_OFF, BLEND_NONE, BACK_DRAWN});
+    state_pass(g, &(pass_state){GL_GREATER, DEPTH_OFF, COLOUR_OFF, BLEND_NONE, BACK_DRAWN, OFFSET_FARTHER});
     for (uint32_t i = 0; i < p->see_through_count; ++i)
         if (has_bit(q->item_bits, p->see_through[i])) add_item(p, p->see_through[i]);
     ranges_draw(g, &p->ranges);
@@ -86,7 +87,7 @@ static void clear(renderer *g)
 {
     const GLuint nothing[4] = {0};
     const GLfloat far = 0;
-    state_pass(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, BACK_DRAWN});
+    state_pass(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, BACK_DRAWN, OFFSET_NONE});
     glClearBufferuiv(GL_COLOR, 0, nothing);
     glClearBufferfv(GL_DEPTH, 0, &far);
 }

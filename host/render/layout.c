@@ -4,9 +4,9 @@
 
 #include <string.h>
 
-static uint32_t item_at(const render_layout *l, uint32_t place, uint32_t item_count)
+static uint32_t item_at(const render_layout *l, uint32_t place)
 {
-    return l->order && place < item_count ? l->order[place] : place;
+    return l->order && place < l->item_count ? l->order[place] : place;
 }
 
 // first_index of each place, and how many see-through places stand before it.
@@ -18,7 +18,7 @@ static void fill_tables(render_layout *l)
         l->first_index[place] = index;
         if (l->see_through) l->see_through[place] = see_through;
         if (place == l->total) break;
-        const uint32_t item = item_at(l, place, p->scene->item_count);
+        const uint32_t item = item_at(l, place);
         index += p->scene->items[item].index_count;
         see_through += p->is_see_through[item];
     }
@@ -31,7 +31,7 @@ static result fill_elements(render_layout *l)
     uint32_t *indices = memory_alloc(l->g->memory, count, sizeof *indices);
     if (!indices) return RESULT_NO_MEMORY;
     for (uint32_t place = 0; place < l->total; ++place) {
-        const scene_item *item = &p->scene->items[item_at(l, place, p->scene->item_count)];
+        const scene_item *item = &p->scene->items[item_at(l, place)];
         memcpy(indices + l->first_index[place], p->indices + item->first_index, item->index_count * sizeof *indices);
     }
     glCreateBuffers(1, &l->elements);
@@ -49,9 +49,9 @@ static result fill(render_layout *l, const uint32_t *order)
     if (!l->first_index) return RESULT_NO_MEMORY;
     if (p->see_through_count && !(l->see_through = memory_alloc(memory, places, sizeof *l->see_through))) return RESULT_NO_MEMORY;
     if (order) {
-        l->order = memory_alloc(memory, p->scene->item_count, sizeof *l->order);
+        l->order = memory_alloc(memory, l->item_count, sizeof *l->order);
         if (!l->order) return RESULT_NO_MEMORY;
-        if (p->scene->item_count) memcpy(l->order, order, p->scene->item_count * sizeof *order);
+        if (l->item_count) memcpy(l->order, order, l->item_count * sizeof *order);
     }
     fill_tables(l);
     const result done = order ? fill_elements(l) : RESULT_OK;
@@ -66,6 +66,7 @@ result render_layout_open(renderer *g, const uint32_t *order, report *r, render_
     if (!l) return report_no_memory(r, g->scene.scene->path);
     l->g = g;
     l->total = g->scene.item_total;
+    l->item_count = g->scene.scene->item_count;
     result done = fill(l, order);
     if (done == RESULT_NO_MEMORY) report_no_memory(r, g->scene.scene->path);
     else done = gl_check(g, r, "laying out the scene");
@@ -81,13 +82,12 @@ void render_layout_close(render_layout *l)
 {
     if (!l) return;
     renderer *g = l->g;
-    const uint32_t item_count = l->order ? g->scene.scene->item_count : 0;
     pictures_forget_layout(g, l);
     if (g->frame.last_layout == l) g->frame.last_layout = NULL;
     glDeleteVertexArrays(1, &l->vertices);
     glDeleteBuffers(1, &l->elements);
     g->state.vertices = 0; // its name may come again
-    memory_free(g->memory, l->order, item_count, sizeof *l->order);
+    memory_free(g->memory, l->order, l->item_count, sizeof *l->order);
     memory_free(g->memory, l->first_index, (size_t)l->total + 1, sizeof *l->first_index);
     memory_free(g->memory, l->see_through, (size_t)l->total + 1, sizeof *l->see_through);
     memory_free(g->memory, l, 1, sizeof *l);

@@ -14,7 +14,7 @@ typedef struct program_text {
 static program_text text_of(program_kind kind)
 {
     switch (kind) {
-    case PROGRAM_ID: return (program_text){scene_vert, id_frag, "", 1};
+    case PROGRAM_ID: return (program_text){scene_vert, id_frag, "#define FAR_DEPTH\n", 1};
     case PROGRAM_SEE_THROUGH: return (program_text){scene_vert, see_through_frag, "", 1};
     case PROGRAM_SHADED: return (program_text){scene_vert, frame_frag, "#define SHADED\n#define EYE_POSITION\n", 1};
     case PROGRAM_ITEMS: return (program_text){scene_vert, frame_frag, "#define ITEMS\n", 1};

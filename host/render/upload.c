@@ -140,6 +140,20 @@ static GLuint triangles_of(upload *u, const allocator *memory)
     return name;
 }
 
+// For each triangle's own vertex, where the other two are.
+static GLuint others_of(const upload *u, const uint32_t *indices, const allocator *memory)
+{
+    typedef struct pair { cull_vec3 a, b; } pair;
+    const size_t count = u->s->position_count + u->doubled.count;
+    pair *pairs = memory_alloc_zeroed(memory, count, sizeof *pairs);
+    if (!pairs) return 0;
+    for (size_t i = 0; i < u->s->index_count; i += 3)
+        pairs[indices[i + 2]] = (pair){u->s->positions[indices[i]], u->s->positions[indices[i + 1]]}; // only the third may be a doubled one
+    const GLuint name = buffer_of(pairs, count * sizeof *pairs);
+    memory_free(memory, pairs, count, sizeof *pairs);
+    return name;
+}
+
 static result upload_vertices(scene_gpu *p, upload *u, const allocator *memory)
 {
     const scene *s = u->s;
@@ -148,7 +162,8 @@ static result upload_vertices(scene_gpu *p, upload *u, const allocator *memory)
     p->positions = attribute_of(u, s->positions, sizeof *s->positions, memory);
     p->words = words_of(u, memory);
     p->triangles = triangles_of(u, memory);
-    if (!p->positions || !p->words || !p->triangles) return RESULT_NO_MEMORY;
+    p->others = others_of(u, p->indices, memory);
+    if (!p->positions || !p->words || !p->triangles || !p->others) return RESULT_NO_MEMORY;
     if (s->texcoords && !(p->texcoords = attribute_of(u, s->texcoords, 2 * sizeof(float), memory))) return RESULT_NO_MEMORY;
     if (s->normals && !(p->normals = attribute_of(u, s->normals, sizeof(uint32_t), memory))) return RESULT_NO_MEMORY;
     p->elements = buffer_of(p->indices, s->index_count * sizeof(uint32_t));
@@ -203,7 +218,7 @@ static result upload_triangles(scene_gpu *p, const upload *u, const allocator *m
 static result reserve(renderer *g, scene_gpu *p)
 {
     const size_t total = p->item_total;
-    p->indices = memory_alloc(g->memory, p->scene->index_count, sizeof *p->indices);
+    p->indices = memory_alloc(g->memory, p->index_count, sizeof *p->indices);
     p->see_through = memory_alloc(g->memory, total, sizeof *p->see_through);
     p->is_see_through = memory_alloc_zeroed(g->memory, total, 1);
     p->box_items = memory_alloc(g->memory, total, sizeof *p->box_items);
@@ -247,6 +262,11 @@ GLuint scene_vertex_array(const renderer *g, GLuint elements)
     glVertexArrayAttribIFormat(name, 1, 1, GL_UNSIGNED_INT, 0);
     attribute(name, 2, p->triangles, 4);
     glVertexArrayAttribIFormat(name, 2, 1, GL_UNSIGNED_INT, 0);
+    attribute(name, 5, p->others, 24);
+    glVertexArrayAttribFormat(name, 5, 3, GL_FLOAT, GL_FALSE, 0);
+    glVertexArrayAttribFormat(name, 6, 3, GL_FLOAT, GL_FALSE, 12);
+    glVertexArrayAttribBinding(name, 6, 5);
+    glEnableVertexArrayAttrib(name, 6);
     if (p->texcoords) {
         attribute(name, 3, p->texcoords, 8);
         glVertexArrayAttribFormat(name, 3, 2, GL_FLOAT, GL_FALSE, 0);
@@ -275,6 +295,7 @@ result renderer_upload(renderer *g, const scene *s, report *r)
     if (fits != RESULT_OK) return fits;
     scene_gpu *p = &g->scene;
     p->scene = s;
+    p->index_count = s->index_count;
     p->triangle_count = s->index_count / 3;
     p->item_total = s->item_count + s->mover_count;
     result done = fill(g, p, r);
@@ -293,13 +314,13 @@ result renderer_upload(renderer *g, const scene *s, report *r)
 
 void scene_release(renderer *g)
 {
-    scene_gpu *p = &g->scene;
+    scene_gpu *p = &g->scene; // the scene itself may be gone already
     if (!p->scene) return;
-    const GLuint buffers[] = {p->positions, p->words, p->triangles, p->texcoords, p->normals, p->elements,
+    const GLuint buffers[] = {p->positions, p->words, p->triangles, p->texcoords, p->normals, p->others, p->elements,
                               p->materials, p->two_sided, p->triangle_items, p->seen, p->counts};
     glDeleteVertexArrays(1, &p->vertices);
     glDeleteBuffers((GLsizei)(sizeof buffers / sizeof *buffers), buffers);
-    memory_free(g->memory, p->indices, p->scene->index_count, sizeof *p->indices);
+    memory_free(g->memory, p->indices, p->index_count, sizeof *p->indices);
     memory_free(g->memory, p->see_through, p->item_total, sizeof *p->see_through);
     memory_free(g->memory, p->is_see_through, p->item_total, 1);
     memory_free(g->memory, p->box_items, p->item_total, sizeof *p->box_items);

@@ -13,20 +13,14 @@ static inline __m512 height(const float *x, const float *y, const float *z, cons
     return _mm512_add_ps(_mm512_add_ps(sx, sy), sz);
 }
 
-// Two planes a turn, the last one twice if need be: mostly one or two planes cut a block, so the loop's end is foreseen.
 static inline uint32_t block_touch(const float *block, const walk_plane *planes, uint32_t which)
 {
     __mmask16 touching = 0xffff;
-    do {
+    for (; which; which &= which - 1) {
         const walk_plane *p = &planes[__builtin_ctz(which)];
-        which = which & (which - 1) ? which & (which - 1) : which;
-        const walk_plane *q = &planes[__builtin_ctz(which)];
-        which &= which - 1;
         const __m512 sum = height(block + p->inner_x, block + p->inner_y, block + p->inner_z, p);
         touching = _mm512_mask_cmp_ps_mask(touching, sum, _mm512_set1_ps(p->limit), _CMP_GE_OQ);
-        const __m512 sum2 = height(block + q->inner_x, block + q->inner_y, block + q->inner_z, q);
-        touching = _mm512_mask_cmp_ps_mask(touching, sum2, _mm512_set1_ps(q->limit), _CMP_GE_OQ);
-    } while (which);
+    }
     return touching;
 }
 

@@ -26,7 +26,7 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1e300 0\nf 1 2 3\n' > huge.obj
 printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n' > flat.obj
 { printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf'; awk 'BEGIN { for (i = 0; i < 1000000; i++) printf " %d", i % 3 + 1; print "" }'; } > million.obj
 printf '{\n"classname" "worldspawn"\n{\n( 0 0 0 ) ( 1 0 0 ) ( 0 1 0 ) wall 0 0 0 1 1\n' > unclosed.map
-printf '{\n"classname" "worldspawn"\n{\n( 0 0 0 ) ( 0 64 0 ) ( 64 0 0 ) wall 0 0 0 1 1\n( 0 0 0 ) ( 0 0 64 ) ( 0 64 0 ) wall 0 0 0 1 1\n( 0 0 0 ) ( 64 0 0 ) ( 0 0 64 ) wall 0 0 0 1 1\n( 0 0 64 ) ( 64 0 64 ) ( 0 64 64 ) wall 0 0 0 1 1\n}\n}\n' > unbounded.map
+printf '{\n"classname" "worldspawn"\n{\n( 0 0 0 ) ( 64 0 0 ) ( 0 64 0 ) wall 0 0 0 1 1\n( 0 0 0 ) ( 0 64 0 ) ( 0 0 64 ) wall 0 0 0 1 1\n( 0 0 0 ) ( 0 0 64 ) ( 64 0 0 ) wall 0 0 0 1 1\n( 0 0 64 ) ( 0 64 64 ) ( 64 0 64 ) wall 0 0 0 1 1\n}\n}\n' > unbounded.map
 printf 'boxes 2\n0 0 0 1 1 1\n' > short.boxes
 printf 'boxes 1\n0 0 0 -1 1 1\n' > inverted.boxes
 printf '0 0 0 0 0 -1 0 1 0 60 1 0.1 100\n0 0 0 nan 0 -1 0 1 0 60 1 0.1 100\n' > nan.views

@@ -200,11 +200,27 @@ static int passes(const double from[3], const double to[3], const double a[3], c
     return ab == bc && bc == ca;
 }
 
+// Do the boxes round the segment and the polygon miss each other?
+static int is_far(const probe *p, const probe_polygon *q, const double from[3], const double to[3])
+{
+    for (int n = 0; n < 3; ++n) {
+        const double least = fmin(from[n], to[n]), most = fmax(from[n], to[n]);
+        uint32_t below = 0, above = 0;
+        for (uint32_t k = 0; k < q->corner_count; ++k) {
+            below += p->places[q->corners[k]][n] < least;
+            above += p->places[q->corners[k]][n] > most;
+        }
+        if (below == q->corner_count || above == q->corner_count) return 1;
+    }
+    return 0;
+}
+
 size_t probe_crossings(const probe *p, const double from[3], const double to[3])
 {
     size_t count = 0;
     for (size_t i = 0; i < p->polygon_count; ++i) {
         const probe_polygon *q = &p->polygons[i];
+        if (is_far(p, q, from, to)) continue;
         for (uint32_t k = 2; k < q->corner_count; ++k)
             count += (size_t)passes(from, to, p->places[q->corners[0]], p->places[q->corners[k - 1]], p->places[q->corners[k]]);
     }

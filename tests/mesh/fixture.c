@@ -10,7 +10,7 @@
 static void capture(void *user, report_level level, const char *text)
 {
     captured *c = user;
-    (void)level;
+    if (level == REPORT_NOTE) return;
     const size_t length = strlen(text);
     if (c->used + length + 2 > sizeof c->text) return;
     memcpy(c->text + c->used, text, length);
@@ -24,27 +24,6 @@ void captured_open(captured *c)
     memset(c, 0, sizeof *c);
     c->report.line = capture;
     c->report.user = c;
-}
-
-static void *counting_alloc(void *user, size_t size, size_t align)
-{
-    counting_heap *h = user;
-    if (++h->made == h->fail_at) return NULL;
-    void *memory = allocator_heap()->alloc(NULL, size, align);
-    h->live += memory != NULL;
-    return memory;
-}
-
-static void counting_free(void *user, void *memory, size_t size)
-{
-    counting_heap *h = user;
-    h->live--;
-    allocator_heap()->free(NULL, memory, size);
-}
-
-void counting_heap_open(counting_heap *h, long fail_at)
-{
-    *h = (counting_heap){.allocator = {counting_alloc, counting_free, h}, .fail_at = fail_at};
 }
 
 static result import_stl_bytes(const char *path, const void *bytes, size_t size, const allocator *memory, report *r, scene **out)
@@ -97,6 +76,17 @@ void assert_refused(const char *path, const char *text, const char *line)
     assert_int_equal(done, RESULT_BAD_INPUT);
     assert_null(s);
     assert_memory_equal(c.text, line, strlen(line));
+}
+
+int has_openmesh(void)
+{
+#ifdef PORTCULLIS_WITH_OPENMESH
+    return 1;
+#else
+    fprintf(stderr, "SKIPPED: built without OpenMesh\n");
+    skip();
+    return 0;
+#endif
 }
 
 char *scene_file(const char *name, size_t *size)
@@ -170,17 +160,4 @@ void assert_clusters_are_sound(const scene *s)
 void remove_scene(scene *s)
 {
     scene_free(s, allocator_heap());
-}
-
-uint64_t seeded_next(seeded *s)
-{
-    uint64_t x = s->state += 0x9e3779b97f4a7c15u;
-    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ x >> 27) * 0x94d049bb133111ebu;
-    return x ^ x >> 31;
-}
-
-double seeded_unit(seeded *s)
-{
-    return (double)(seeded_next(s) >> 11) / 9007199254740992.0;
 }

@@ -31,7 +31,7 @@ vec3 lit(vec3 albedo)
     n = n / max(length(n), 1e-30); // a face of no area has no direction; anything but NaN will do
     float sun = max(dot(n, vec3(0.47, 0.80, 0.37)), 0.0);
     float fill = max(dot(n, vec3(-0.70, 0.25, -0.67)), 0.0);
-    return albedo * (vec3(0.30, 0.33, 0.38) + 0.12 * n.y + sun * vec3(0.62, 0.58, 0.50) + fill * vec3(0.17, 0.20, 0.24));
+    return albedo * (vec3(0.42, 0.44, 0.48) + 0.10 * n.y + sun * vec3(0.56, 0.52, 0.44) + fill * vec3(0.17, 0.20, 0.24));
 }
 #endif
 

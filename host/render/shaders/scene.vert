@@ -25,6 +25,19 @@ out vec3 v_normal;
 #ifdef EYE_POSITION
 out vec3 v_eye;
 #endif
+#ifdef FAR_DEPTH
+layout(location = 5) in vec3 other_a; // the triangle's other corners, where this vertex is its last
+layout(location = 6) in vec3 other_b;
+flat out float v_far_depth; // of its farthest corner
+float depth_of(vec4 clip)
+{
+    return clip.w > 0.0 ? clip.z / clip.w : 1.0; // behind the eye: not the farthest
+}
+vec4 clip_of(vec3 p)
+{
+    return clip_from_eye * vec4((p - eye_high) - eye_low, 1.0);
+}
+#endif
 #ifdef CLIP
 out float gl_ClipDistance[4];
 #endif
@@ -37,6 +50,9 @@ void main()
     if ((word & WORD_TRANSLUCENT) != wanted) gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside: the whole triangle goes
 #endif
     v_triangle = triangle;
+#ifdef FAR_DEPTH
+    v_far_depth = min(depth_of(gl_Position), min(depth_of(clip_of(other_a)), depth_of(clip_of(other_b))));
+#endif
 #ifdef CUT_OUT
     v_texcoord = texcoord;
 #endif

@@ -1,0 +1,199 @@
+// Tests of frustum[backface=1]: only walls whose every triangle shows its back to the eye are dropped. The oracle is in
+// long double, from the vertices that are drawn.
+// SPDX-License-Identifier: MIT
+#include "fixture.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <cmocka.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { WALLS = 1500, OTHERS = 200, ITEMS = WALLS + OTHERS };
+
+typedef struct wall_zone {
+    test_zone z;
+    cull_vec3 positions[4 * ITEMS];
+    uint32_t indices[6 * ITEMS], loops[4 * ITEMS];
+    cull_wall walls[ITEMS];
+    cull_plane planes[ITEMS];
+} wall_zone;
+
+// Quads whose vertices are rounded to `grid` metres, as a scene's are; the last items are no walls or two-sided.
+static wall_zone *make_walls(random_state *r, double grid)
+{
+    wall_zone *w = calloc(1, sizeof *w);
+    cull_box *boxes = calloc(ITEMS, sizeof *boxes);
+    assert_true(w && boxes);
+    for (uint32_t i = 0; i < ITEMS; i++) {
+        double n[3], u[3], v[3], c[3], length = 0;
+        random_direction(r, n);
+        random_direction(r, u);
+        for (int k = 0; k < 3; k++) c[k] = random_between(r, -50, 50);
+        for (int k = 0; k < 3; k++) v[k] = n[(k + 1) % 3] * u[(k + 2) % 3] - n[(k + 2) % 3] * u[(k + 1) % 3];
+        for (int k = 0; k < 3; k++) length += v[k] * v[k];
+        for (int k = 0; k < 3; k++) v[k] /= sqrt(length);
+        for (int k = 0; k < 3; k++) u[k] = v[(k + 1) % 3] * n[(k + 2) % 3] - v[(k + 2) % 3] * n[(k + 1) % 3]; // u x v = n
+        const double wide = random_between(r, 0.01, 8), high = random_unit(r) < 0.1 ? 0.01 : random_between(r, 0.1, 8);
+        cull_box box = cull_box_none();
+        for (uint32_t k = 0; k < 4; k++) {
+            const double a = (k == 1 || k == 2 ? 1 : -1) * wide, b = (k >= 2 ? 1 : -1) * high;
+            cull_vec3 *p = &w->positions[4 * i + k];
+            for (int j = 0; j < 3; j++) (&p->x)[j] = (float)(rint((c[j] + a * u[j] + b * v[j]) / grid) * grid);
+            w->loops[4 * i + k] = 4 * i + k;
+            box = cull_box_with_point(box, *p);
+        }
+        boxes[i] = box;
+        const uint32_t fan[6] = {0, 1, 2, 0, 2, 3};
+        for (int k = 0; k < 6; k++) w->indices[6 * i + (uint32_t)k] = 4 * i + fan[k];
+        w->walls[i] = (cull_wall){4 * i, 4, i, 0};
+        double offset = 0;
+        for (int k = 0; k < 3; k++) offset -= n[k] * c[k];
+        w->planes[i] = (cull_plane){{(float)n[0], (float)n[1], (float)n[2]}, (float)offset};
+    }
+    test_zone_make(boxes, ITEMS, &w->z);
+    free(boxes);
+    for (uint32_t i = 0; i < ITEMS; i++) {
+        uint32_t flags = CULL_ITEM_WALL;
+        if (i >= WALLS) flags = i % 2 ? 0 : CULL_ITEM_WALL | CULL_ITEM_TWO_SIDED;
+        if (!(flags & CULL_ITEM_WALL)) w->walls[i] = (cull_wall){0, 0, 0, 0};
+        w->z.items[i] = (cull_item){.first_index = 6 * i, .index_count = 6, .polygon_count = 1, .flags = flags};
+    }
+    cull_zone *z = &w->z.zone;
+    z->positions = w->positions;
+    z->indices = w->indices;
+    z->walls = w->walls;
+    z->wall_vertices = w->loops;
+    z->planes = w->planes;
+    z->position_count = z->wall_vertex_count = 4 * ITEMS;
+    z->index_count = 6 * ITEMS;
+    z->plane_count = ITEMS;
+    return w;
+}
+
+// > 0: the eye sees the triangle's front.
+static long double front(const wall_zone *w, const uint32_t *t, const double eye[4])
+{
+    long double p[3][3];
+    for (int k = 0; k < 3; k++)
+        for (int j = 0; j < 3; j++) p[k][j] = (long double)(&w->positions[t[k]].x)[j];
+    long double u[3], v[3], height = 0;
+    for (int j = 0; j < 3; j++) {
+        u[j] = p[1][j] - p[0][j];
+        v[j] = p[2][j] - p[0][j];
+    }
+    for (int j = 0; j < 3; j++)
+        height += (u[(j + 1) % 3] * v[(j + 2) % 3] - u[(j + 2) % 3] * v[(j + 1) % 3]) * (eye[j] - eye[3] * p[0][j]);
+    return height;
+}
+
+static int shows_a_front(const wall_zone *w, uint32_t item, const double eye[4])
+{
+    return front(w, w->indices + 6 * item, eye) > 0 || front(w, w->indices + 6 * item + 3, eye) > 0;
+}
+
+typedef struct tally { uint64_t backs, dropped, lost; } tally;
+
+static void check_view(const wall_zone *w, session *s, const double eye[4], tally *t)
+{
+    static uint8_t seen[ITEMS];
+    const cull_view view = {.eye = {(float)eye[0], (float)eye[1], (float)eye[2], (float)eye[3]}};
+    const cull_volume everything = {NULL, 0, 0};
+    session_select(s, &view, &everything, 1);
+    assert_null(session_set(s, seen));
+    for (uint32_t i = 0; i < ITEMS; i++) {
+        const int may_go = i < WALLS && !shows_a_front(w, i, eye);
+        t->backs += (uint64_t)may_go;
+        t->dropped += !seen[i];
+        t->lost += !seen[i] && !may_go;
+    }
+}
+
+static void only_walls_that_show_no_front_are_dropped(void **state)
+{
+    (void)state;
+    const cull_plugin *frustum = plugin_frustum();
+    if (!frustum) {
+        fprintf(stderr, "SKIPPED: the frustum library is not built\n");
+        skip();
+    }
+    random_state r = {31};
+    static const char *const isas[] = {"plain", "avx2", "avx512"};
+    for (int g = 0; g < 3; g++) {
+        wall_zone *w = make_walls(&r, (const double[]){0x1p-18, 0x1p-10, 0x1p-5}[g]);
+        for (int i = 0; i < 3; i++) {
+            test_host h;
+            test_host_init(&h);
+            session s;
+            const char *values[2] = {"1", isas[i]};
+            if (session_open(&s, &h, frustum, &w->z.zone, values) != CULL_OK) continue;
+            tally t = {0, 0, 0};
+            for (int q = 0; q < 60; q++) {
+                double eye[4] = {random_between(&r, -60, 60), random_between(&r, -60, 60), random_between(&r, -60, 60), 1};
+                if (q % 4 == 1) // on a wall's plane, as near as doubles come
+                    for (int j = 0; j < 3; j++) eye[j] = (double)(&w->positions[4 * q].x)[j] * 3 - (double)(&w->positions[4 * q + 1].x)[j] * 2;
+                if (q % 4 == 2) { // a direction
+                    random_direction(&r, eye);
+                    eye[3] = 0;
+                }
+                if (q % 4 == 3) // far outside
+                    for (int j = 0; j < 3; j++) eye[j] *= 300;
+                check_view(w, &s, eye, &t);
+            }
+            assert_int_equal(t.lost, 0);
+            assert_true(t.dropped * 10 > t.backs * (g < 2 ? 9 : 5)); // and nearly all of them are
+            session_close(&s);
+            assert_int_equal(h.live_blocks, 0);
+        }
+        test_zone_free(&w->z);
+        free(w);
+    }
+}
+
+static void every_instruction_set_drops_the_same_walls(void **state)
+{
+    (void)state;
+    const cull_plugin *frustum = plugin_frustum();
+    if (!frustum) {
+        fprintf(stderr, "SKIPPED: the frustum library is not built\n");
+        skip();
+    }
+    random_state r = {32};
+    wall_zone *w = make_walls(&r, 0x1p-10);
+    test_host h;
+    test_host_init(&h);
+    session s[3];
+    const char *isas[] = {"plain", "avx2", "avx512"};
+    int count = 0;
+    for (int i = 0; i < 3; i++) {
+        const char *values[2] = {"1", isas[i]};
+        if (session_open(&s[count], &h, frustum, &w->z.zone, values) == CULL_OK) count++;
+    }
+    for (int q = 0; q < 200; q++) {
+        double n[3], eye[3];
+        static uint8_t first[ITEMS], other[ITEMS];
+        random_direction(&r, n);
+        for (int j = 0; j < 3; j++) eye[j] = random_between(&r, -60, 60);
+        const cull_plane planes[2] = {{{(float)n[0], (float)n[1], (float)n[2]}, 5}, {{(float)-n[1], (float)n[0], 0}, 20}};
+        const cull_volume volumes[2] = {{planes, 1, 0}, {planes + 1, 1, 0}};
+        const cull_view view = {.eye = {(float)eye[0], (float)eye[1], (float)eye[2], 1}};
+        for (int i = 0; i < count; i++) {
+            session_select(&s[i], &view, volumes, 1 + (uint32_t)q % 2);
+            assert_null(session_set(&s[i], i ? other : first));
+            if (i) assert_memory_equal(first, other, ITEMS);
+        }
+    }
+    for (int i = 0; i < count; i++) session_close(&s[i]);
+    test_zone_free(&w->z);
+    free(w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(only_walls_that_show_no_front_are_dropped),
+        cmocka_unit_test(every_instruction_set_drops_the_same_walls),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

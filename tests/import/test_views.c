@@ -1,0 +1,345 @@
+// Camera paths: files there and back, faults, and the automatic views against a brute-force search for room.
+// SPDX-License-Identifier: MIT
+#include "support.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double CLEARANCE = 0.125, ASPECT = 16.0 / 9;
+
+// ---- Files ----
+
+static void expect_error(const char *text, const char *line)
+{
+    heard h;
+    report r = hear(&h);
+    camera_path path = {0};
+    assert_int_equal(camera_path_parse("t.views", text, strlen(text), allocator_heap(), &r, &path), RESULT_BAD_INPUT);
+    assert_int_equal(r.errors, 1);
+    assert_string_equal(h.text, line);
+    assert_null(path.cameras);
+}
+
+static void views_are_read_with_comments_and_named_after_their_file(void **state)
+{
+    (void)state;
+    const char *text = "# a path\n\n0 1.7 -120 0 0 1 0 1 0 60 1.777778 0.1 10000\r\n 1 2 3 -1 0 0 0 1 0 90 1 0.5 inf # the last\n";
+    heard h;
+    report r = hear(&h);
+    camera_path path;
+    assert_int_equal(camera_path_parse("some/where/city.views", text, strlen(text), allocator_heap(), &r, &path), RESULT_OK);
+    assert_int_equal(path.count, 2);
+    assert_string_equal(path.name, "city");
+    assert_true(path.cameras[0].eye[2] == -120 && path.cameras[0].forward[2] == 1 && path.cameras[0].up[1] == 1);
+    assert_true(path.cameras[0].fovy_deg == 60 && path.cameras[0].aspect == 1.777778 && path.cameras[0].near_m == 0.1 && path.cameras[0].far_m == 10000);
+    assert_true(isinf(path.cameras[1].far_m));
+    camera_path_free(&path, allocator_heap());
+}
+
+static void what_is_no_view_is_refused_with_its_line(void **state)
+{
+    (void)state;
+    expect_error("", "t.views: error: no view in it; write 13 numbers a line");
+    expect_error("# only a comment\n", "t.views: error: no view in it; write 13 numbers a line");
+    expect_error("0 0 0 0 0 1 0 1 0 60 1 0.1\n",
+                 "t.views:1: error: number 13 of 13 is missing or no decimal number; write eye(3) dir(3) up(3) fovy_deg aspect near far");
+    expect_error("0 0 0 0 0 1 0 1 0 60 1 0.1 10\n0 0 nan 0 0 1 0 1 0 60 1 0.1 10\n",
+                 "t.views:2: error: number 3 of 13 is missing or no decimal number; write eye(3) dir(3) up(3) fovy_deg aspect near far");
+    expect_error("0 0 0 0 0 1 0 1 0 60 1 0.1 10 7\n", "t.views:1: error: more than 13 numbers; write one view a line");
+    expect_error("\n0 0 0 0 0 0 0 1 0 60 1 0.1 10\n", "t.views:2: error: forward is zero; correct the view");
+}
+
+static scene *real_map(const char *name)
+{
+    size_t size;
+    char *text = real_scene(name, &size);
+    if (!text) skip();
+    heard h;
+    report r = hear(&h);
+    scene *s = NULL;
+    const int is_map = strstr(name, ".map") != NULL;
+    const result done = is_map ? import_map(name, text, size, &doors_open, allocator_heap(), &r, &s) : import_boxes(name, text, size, allocator_heap(), &r, &s);
+    assert_int_equal(done, RESULT_OK);
+    memory_free(allocator_heap(), text, size + 1, 1);
+    return s;
+}
+
+static camera_path automatic(const char *what, const scene *s)
+{
+    heard h;
+    report r = hear(&h);
+    camera_path path;
+    if (camera_path_load(what, s, ASPECT, allocator_heap(), &r, &path) != RESULT_OK) fail_msg("%s", h.text);
+    assert_string_equal(path.name, what);
+    return path;
+}
+
+static void a_path_written_reads_back_bit_for_bit(void **state)
+{
+    (void)state;
+    scene *s = real_map("librequake/lq_e3m4.map");
+    camera_path first = automatic("auto:100", s), again;
+    char *text;
+    size_t size;
+    heard h;
+    report r = hear(&h);
+    assert_int_equal(camera_path_text(&first, allocator_heap(), &text, &size), RESULT_OK);
+    assert_int_equal(camera_path_parse("again.views", text, size, allocator_heap(), &r, &again), RESULT_OK);
+    assert_int_equal(again.count, 100);
+    assert_memory_equal(again.cameras, first.cameras, 100 * sizeof *first.cameras);
+    memory_free(allocator_heap(), text, size + 1, 1);
+    camera_path_free(&first, allocator_heap());
+    camera_path_free(&again, allocator_heap());
+    scene_free(s, allocator_heap());
+}
+
+// ---- Room, by brute force ----
+
+// The nearest point of a convex body by Dykstra's alternating projections: slow, and unlike anything in the product.
+static double distance_to_solid(const scene *s, const scene_solid *solid, const double p[3])
+{
+    enum { ROUNDS = 400, PLANES_MOST = 64 };
+    static double steps[PLANES_MOST][3];
+    const scene_solid_plane *planes = s->solid_planes + solid->first_plane;
+    double x[3], far_away = 0;
+    for (int k = 0; k < 3; ++k) far_away = fmax(far_away, fmax(solid->min[k] - p[k], p[k] - solid->max[k]));
+    if (far_away > 1) return far_away;
+    assert_true(solid->plane_count <= PLANES_MOST);
+    memset(steps, 0, sizeof steps);
+    memcpy(x, p, sizeof x);
+    for (int round = 0; round < ROUNDS; ++round)
+        for (uint32_t i = 0; i < solid->plane_count; ++i) {
+            double y[3], out = -planes[i].distance;
+            for (int k = 0; k < 3; ++k) {
+                y[k] = x[k] + steps[i][k];
+                out += planes[i].normal[k] * y[k];
+            }
+            for (int k = 0; k < 3; ++k) {
+                x[k] = y[k] - fmax(out, 0) * planes[i].normal[k];
+                steps[i][k] = y[k] - x[k];
+            }
+        }
+    return sqrt((x[0] - p[0]) * (x[0] - p[0]) + (x[1] - p[1]) * (x[1] - p[1]) + (x[2] - p[2]) * (x[2] - p[2]));
+}
+
+static double room_at(const scene *s, const double p[3])
+{
+    double least = 1;
+    for (uint32_t i = 0; i < s->solid_count; ++i) {
+        const double distance = distance_to_solid(s, &s->solids[i], p);
+        if (s->solids[i].kind == SOLID_LIQUID && distance > 0) continue; // only its inside is no room
+        least = fmin(least, distance);
+    }
+    for (uint32_t i = 0; i < s->item_count; ++i) {
+        if (!(s->items[i].flags & CULL_ITEM_BOX)) continue;
+        double sum = 0;
+        const double min[3] = {s->boxes.min_x[i], s->boxes.min_y[i], s->boxes.min_z[i]}, max[3] = {s->boxes.max_x[i], s->boxes.max_y[i], s->boxes.max_z[i]};
+        for (int k = 0; k < 3; ++k) {
+            const double out = fmax(0, fmax(min[k] - (p[k] - s->zone.origin[k]), p[k] - s->zone.origin[k] - max[k]));
+            sum += out * out;
+        }
+        least = fmin(least, sqrt(sum));
+    }
+    return least;
+}
+
+static int are_near(const double a[3], const double b[3])
+{
+    return fabs(a[0] - b[0]) < 1e-9 && fabs(a[1] - b[1]) < 1e-9 && fabs(a[2] - b[2]) < 1e-9;
+}
+
+static int is_at_a_place(const scene *s, const double eye[3])
+{
+    for (uint32_t i = 0; i < s->place_count; ++i) {
+        const double *at = s->places[i].position, lift = s->places[i].kind == PLACE_OTHER ? 0 : 0.7;
+        const double lifted[3] = {at[0], at[1] + lift, at[2]};
+        if (are_near(lifted, eye)) return 1;
+    }
+    return 0;
+}
+
+static void automatic_views_stand_in_air_with_room_around_them(void **state)
+{
+    (void)state;
+    for (int m = 0; m < 8; ++m) {
+        scene *s = real_map(real_maps[m]);
+        camera_path path = automatic("auto:60", s);
+        assert_int_equal(path.count, 60);
+        for (uint32_t i = 0; i < path.count; ++i) {
+            const camera *c = &path.cameras[i];
+            assert_null(camera_fault(c));
+            assert_true(is_at_a_place(s, c->eye));
+            assert_true(room_at(s, c->eye) > CLEARANCE - 1e-3);
+            const double level = sqrt(c->forward[0] * c->forward[0] + c->forward[2] * c->forward[2]);
+            assert_true(fabs(atan2(c->forward[1], level)) <= 25.0001 * 3.14159265358979 / 180);
+            assert_true(c->fovy_deg == 60 && c->aspect == ASPECT && c->near_m == 0.0625 && c->far_m >= 4 * scene_radius_m(s));
+        }
+        camera_path_free(&path, allocator_heap());
+        scene_free(s, allocator_heap());
+    }
+}
+
+// Of the places that an automatic view may take, none is left out: by the same brute force.
+static void every_place_with_room_is_used(void **state)
+{
+    (void)state;
+    scene *s = real_map("librequake/lqdm12.map");
+    camera_path path = automatic("auto:400", s);
+    uint32_t good = 0, used = 0;
+    for (uint32_t i = 0; i < s->place_count; ++i) {
+        double eye[3];
+        memcpy(eye, s->places[i].position, sizeof eye);
+        if (s->places[i].kind != PLACE_OTHER) eye[1] += 0.7;
+        if (room_at(s, eye) < CLEARANCE + 1e-3) continue;
+        ++good;
+        for (uint32_t v = 0; v < path.count; ++v)
+            if (are_near(path.cameras[v].eye, eye)) {
+                ++used;
+                break;
+            }
+    }
+    assert_true(good > 50);
+    assert_int_equal(used, good);
+    camera_path_free(&path, allocator_heap());
+    scene_free(s, allocator_heap());
+}
+
+static void the_same_scene_gives_the_same_views(void **state)
+{
+    (void)state;
+    static const char *const whats[] = {"auto:50", "auto:walk:200"};
+    for (int w = 0; w < 2; ++w) {
+        scene *a = real_map("quake/dm4.map"), *b = real_map("quake/dm4.map");
+        camera_path pa = automatic(whats[w], a), pb = automatic(whats[w], b);
+        assert_memory_equal(pa.cameras, pb.cameras, pa.count * sizeof *pa.cameras);
+        camera_path_free(&pa, allocator_heap());
+        camera_path_free(&pb, allocator_heap());
+        scene_free(a, allocator_heap());
+        scene_free(b, allocator_heap());
+    }
+}
+
+static void yaw_is_spread_all_around(void **state)
+{
+    (void)state;
+    scene *s = real_map("boxes/city-1000.boxes");
+    camera_path path = automatic("auto:800", s);
+    uint32_t sectors[8] = {0};
+    for (uint32_t i = 0; i < path.count; ++i) {
+        const double yaw = atan2(path.cameras[i].forward[2], path.cameras[i].forward[0]);
+        sectors[(int)((yaw + 3.14159265358979324) / 6.2831853072 * 8) % 8]++;
+    }
+    for (int k = 0; k < 8; ++k) assert_true(sectors[k] > 60 && sectors[k] < 140); // 100 expected, 10 one sigma
+    camera_path_free(&path, allocator_heap());
+    scene_free(s, allocator_heap());
+}
+
+static void views_of_boxes_stand_outside_of_them(void **state)
+{
+    (void)state;
+    scene *s = real_map("boxes/city-1000.boxes");
+    camera_path path = automatic("auto:300", s);
+    for (uint32_t i = 0; i < path.count; ++i) assert_true(room_at(s, path.cameras[i].eye) >= CLEARANCE - 1e-9);
+    camera_path_free(&path, allocator_heap());
+    scene_free(s, allocator_heap());
+}
+
+// ---- Walks ----
+
+static void expect_walk(const char *scene_name)
+{
+    enum { FRAMES = 500 };
+    scene *s = real_map(scene_name);
+    camera_path path = automatic("auto:walk:500", s);
+    assert_int_equal(path.count, FRAMES);
+    double widest = 0;
+    for (uint32_t i = 0; i < FRAMES; ++i) {
+        const camera *c = &path.cameras[i];
+        assert_null(camera_fault(c));
+        if (i % 4 == 0) assert_true(room_at(s, c->eye) > CLEARANCE - 1e-3);
+        const double level = sqrt(c->forward[0] * c->forward[0] + c->forward[2] * c->forward[2]);
+        assert_true(fabs(atan2(c->forward[1], level)) <= 15.0001 * 3.14159265358979 / 180);
+        if (i == 0) continue;
+        double step = 0, turn = 0, way = 0;
+        for (int k = 0; k < 3; ++k) {
+            const double d = c->eye[k] - c[-1].eye[k], w = c->eye[k] - path.cameras[0].eye[k];
+            step += d * d;
+            way += w * w;
+            turn += c->forward[k] * c[-1].forward[k];
+        }
+        assert_true(fabs(sqrt(step) - 0.3) < 1e-9);
+        assert_true(turn > cos(8 * 3.14159265358979 / 180)); // the view never jerks
+        widest = fmax(widest, sqrt(way));
+    }
+    assert_true(widest > 10);
+    camera_path_free(&path, allocator_heap());
+    scene_free(s, allocator_heap());
+}
+
+static void a_walk_keeps_its_pace_and_its_distance_in_maps(void **state)
+{
+    (void)state;
+    for (int m = 0; m < 8; ++m) expect_walk(real_maps[m]);
+}
+
+static void a_walk_keeps_its_pace_and_its_distance_among_boxes(void **state)
+{
+    (void)state;
+    expect_walk("boxes/city-1000.boxes");
+}
+
+static void a_scene_without_any_room_has_a_walk_beside_it(void **state)
+{
+    (void)state;
+    heard h;
+    report r = hear(&h);
+    scene *s = NULL;
+    const char *text = "boxes 1\n-1 -1 -1 1 1 1\n";
+    assert_int_equal(import_boxes("t.boxes", text, strlen(text), allocator_heap(), &r, &s), RESULT_OK);
+    static const char *const whats[] = {"auto:20", "auto:walk:300"};
+    for (int w = 0; w < 2; ++w) {
+        camera_path path = automatic(whats[w], s);
+        for (uint32_t i = 0; i < path.count; ++i) {
+            assert_null(camera_fault(&path.cameras[i]));
+            assert_true(room_at(s, path.cameras[i].eye) > 0.05);
+        }
+        camera_path_free(&path, allocator_heap());
+    }
+    scene_free(s, allocator_heap());
+}
+
+static void counts_that_make_no_path_are_refused(void **state)
+{
+    (void)state;
+    static const char *const wrong[] = {"auto:", "auto:0", "auto:-3", "auto:ten", "auto:100001", "auto:99999999999999999999", "auto:walk:", "auto:walk:0", "auto:5x"};
+    scene *s = real_map("boxes/city-1000.boxes");
+    for (size_t i = 0; i < sizeof wrong / sizeof *wrong; ++i) {
+        heard h;
+        report r = hear(&h);
+        camera_path path = {0};
+        assert_int_equal(camera_path_load(wrong[i], s, ASPECT, allocator_heap(), &r, &path), RESULT_BAD_INPUT);
+        assert_non_null(strstr(h.text, "write auto:N or auto:walk:N"));
+        assert_null(path.cameras);
+    }
+    scene_free(s, allocator_heap());
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(views_are_read_with_comments_and_named_after_their_file),
+        cmocka_unit_test(what_is_no_view_is_refused_with_its_line),
+        cmocka_unit_test(a_path_written_reads_back_bit_for_bit),
+        cmocka_unit_test(automatic_views_stand_in_air_with_room_around_them),
+        cmocka_unit_test(every_place_with_room_is_used),
+        cmocka_unit_test(the_same_scene_gives_the_same_views),
+        cmocka_unit_test(yaw_is_spread_all_around),
+        cmocka_unit_test(views_of_boxes_stand_outside_of_them),
+        cmocka_unit_test(a_walk_keeps_its_pace_and_its_distance_in_maps),
+        cmocka_unit_test(a_walk_keeps_its_pace_and_its_distance_among_boxes),
+        cmocka_unit_test(a_scene_without_any_room_has_a_walk_beside_it),
+        cmocka_unit_test(counts_that_make_no_path_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

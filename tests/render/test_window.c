@@ -1,0 +1,44 @@
+// The window, on a virtual display where there is one.
+// SPDX-License-Identifier: MIT
+#define _POSIX_C_SOURCE 200809L
+#include "fixture.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+static void a_frame_is_shown_in_a_window(void **state)
+{
+    (void)state;
+    bed b = {.r = report_to_stderr()};
+    const renderer_options o = {.target = RENDERER_WINDOW, .width_px = 200, .height_px = 100, .title = "test"};
+    const quad q = quad_at(-5, -20, -20, 20, 20);
+    const camera c = camera_at(0, 0, 0);
+    const frame_request f = {.camera = &c, .width_px = 200, .height_px = 100, .mode = RENDER_ITEMS};
+    counting_init(&b.memory);
+    assert_int_equal(renderer_open(&o, &b.memory.memory, &b.r, &b.g), RESULT_OK);
+    assert_non_null(renderer_window(b.g));
+    bed_scene(&b, &q, 1, NULL);
+    for (int frame = 0; frame < 3; ++frame) {
+        assert_int_equal(renderer_window_is_open(b.g), 1);
+        uint8_t *rgba = bed_frame(&b, &f, b.l, &(cull_run){0, 1}, 1);
+        assert_int_not_equal(rgba[0], 0);
+        memory_free(allocator_heap(), rgba, 200 * 100, 4);
+        renderer_present(b.g);
+    }
+    assert_int_equal(renderer_errors(b.g), 0);
+    render_layout_close(b.l);
+    scene_free(b.s, &b.memory.memory);
+    renderer_close(b.g);
+    assert_int_equal(b.memory.live_bytes, 0);
+}
+
+int main(void)
+{
+    const char *display = getenv("DISPLAY");
+    if (!display || !*display) {
+        fprintf(stderr, "SKIPPED window: no DISPLAY; install xvfb to run this test\n");
+        return 77;
+    }
+    const struct CMUnitTest window[] = {cmocka_unit_test(a_frame_is_shown_in_a_window)};
+    return cmocka_run_group_tests(window, NULL, NULL);
+}
