@@ -80,9 +80,10 @@ typedef struct cull_guard {
 static inline cull_plane cull_plane_outward(const double normal[3], double offset, double radius)
 {
     const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-    const double x = normal[0] / length, y = normal[1] / length, z = normal[2] / length;
+    const double inverse = 1 / length, x = normal[0] * inverse, y = normal[1] * inverse, z = normal[2] * inverse;
     const double slack = CULL_GUARD_ROUNDING * (fabs(x) + fabs(y) + fabs(z)) * radius + CULL_GUARD_UNDERFLOW;
-    const double wanted = fmin(fmax(offset / length + slack, -(double)FLT_MAX), (double)FLT_MAX);
+    const double exact = offset * inverse + slack, most = (double)FLT_MAX;
+    const double wanted = exact > most ? most : exact < -most ? -most : exact;
     float up = (float)wanted;
     if ((double)up < wanted) up = nextafterf(up, FLT_MAX);
     const cull_plane plane = {{(float)x, (float)y, (float)z}, up};
@@ -100,7 +101,7 @@ static inline cull_plane cull_guard_plane(const cull_guard *guard, const double 
     const double *eye = guard->eye, *forward = guard->forward;
     const double widening = 1.7320508075688772 * CULL_GUARD_DISTANCE * (1 + 1.0 / 262144) * guard->reach;
     const double along = normal[0] * forward[0] + normal[1] * forward[1] + normal[2] * forward[2];
-    const double across = sqrt(fmax(0.0, 1 - along * along)); // tangents that the line moves at, per unit of normal
+    const double rest = 1 - along * along, across = sqrt(rest > 0 ? rest : 0); // tangents that the line moves at, per unit of normal
     const double moved = distance > 0 ? 0 : CULL_GUARD_PX * guard->pixel_tangent * across + widening;
     double out[3];
     for (int i = 0; i < 3; i++) out[i] = normal[i] + moved * forward[i];

@@ -27,15 +27,24 @@ static void cross(const double a[3], const double b[3], double out[3])
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-// Scales by a power of two first: squares of denormal or huge components would be lost. Returns 0 for no direction.
+// Not fmax: that is a call.
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+// Returns 0 for no direction. Squares of denormal or huge components would be lost: those are scaled first, by a power of
+// two, which changes no other bit.
 static int unit(const double v[3], double out[3])
 {
-    const double largest = fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2])));
+    const double largest = larger(fabs(v[0]), larger(fabs(v[1]), fabs(v[2])));
     if (!(largest > 0) || !isfinite(largest)) return 0;
-    int exponent;
-    (void)frexp(largest, &exponent);
-    double scaled[3];
-    for (int i = 0; i < 3; i++) scaled[i] = ldexp(v[i], -exponent);
+    double scaled[3] = {v[0], v[1], v[2]};
+    if (largest < 1e-100 || largest > 1e100) {
+        int exponent;
+        (void)frexp(largest, &exponent);
+        for (int i = 0; i < 3; i++) scaled[i] = ldexp(v[i], -exponent);
+    }
     const double length = sqrt(dot(scaled, scaled));
     for (int i = 0; i < 3; i++) out[i] = scaled[i] / length;
     return 1;
@@ -83,21 +92,39 @@ static double half_tangent(const camera *c)
     return tan(c->fovy_deg * (PI / 360));
 }
 
-void camera_clip_from_eye(const camera *c, double out[16])
-{
+// What a frame needs of a camera, computed once.
+typedef struct frustum_shape {
     double right[3], up[3], back[3];
-    camera_axes(c, right, up, back);
-    const double t = half_tangent(c);
+    double tall, wide; // half the picture at distance 1
+} frustum_shape;
+
+static frustum_shape shape_of(const camera *c)
+{
+    frustum_shape s;
+    camera_axes(c, s.right, s.up, s.back);
+    s.tall = half_tangent(c);
+    s.wide = s.tall * c->aspect;
+    return s;
+}
+
+static void clip_from_eye(const camera *c, const frustum_shape *s, double out[16])
+{
     const double share = c->near_m / c->far_m; // 0 for an infinite far; below 1 as near < far, even of neighbours
     const double slope = share / (1 - share), at_zero = c->near_m / (1 - share);
     for (int i = 0; i < 3; i++) {
-        out[4 * i + 0] = right[i] / (t * c->aspect);
-        out[4 * i + 1] = up[i] / t;
-        out[4 * i + 2] = slope * back[i];
-        out[4 * i + 3] = 0.0 - back[i];
+        out[4 * i + 0] = s->right[i] / s->wide;
+        out[4 * i + 1] = s->up[i] / s->tall;
+        out[4 * i + 2] = slope * s->back[i];
+        out[4 * i + 3] = 0.0 - s->back[i];
     }
     out[12] = out[13] = out[15] = 0;
     out[14] = at_zero;
+}
+
+void camera_clip_from_eye(const camera *c, double out[16])
+{
+    const frustum_shape s = shape_of(c);
+    clip_from_eye(c, &s, out);
 }
 
 static double zone_corner_height(const cull_plane *p, const cull_box *b)
@@ -125,28 +152,24 @@ static void volume_add_side(view_volume *volume, const cull_guard *guard, const 
     volume_add(volume, cull_guard_plane(guard, normal, 0), zone_box);
 }
 
-static void volume_derive(const camera *c, const cull_guard *guard, const double right[3], const double up[3], const cull_box *zone_box,
-                          view_volume *volume)
+static void volume_derive(const camera *c, const cull_guard *guard, const frustum_shape *s, const cull_box *zone_box, view_volume *volume)
 {
-    const double t = half_tangent(c), wide = t * c->aspect;
     volume->plane_count = 0;
     for (int side = -1; side <= 1; side += 2) {
         double axis[3];
-        for (int i = 0; i < 3; i++) axis[i] = side * right[i];
-        volume_add_side(volume, guard, axis, wide, zone_box);
-        for (int i = 0; i < 3; i++) axis[i] = side * up[i];
-        volume_add_side(volume, guard, axis, t, zone_box);
+        for (int i = 0; i < 3; i++) axis[i] = side * s->right[i];
+        volume_add_side(volume, guard, axis, s->wide, zone_box);
+        for (int i = 0; i < 3; i++) axis[i] = side * s->up[i];
+        volume_add_side(volume, guard, axis, s->tall, zone_box);
     }
     if (!isfinite(c->far_m)) return;
-    double back[3];
-    for (int i = 0; i < 3; i++) back[i] = -guard->forward[i];
-    volume_add(volume, cull_guard_plane(guard, back, c->far_m), zone_box);
+    volume_add(volume, cull_guard_plane(guard, s->back, c->far_m), zone_box);
 }
 
-static void matrix_derive(const camera *c, const double eye[3], float out[16])
+static void matrix_derive(const camera *c, const frustum_shape *s, const double eye[3], float out[16])
 {
     double m[16];
-    camera_clip_from_eye(c, m);
+    clip_from_eye(c, s, m);
     for (int row = 0; row < 4; row++) {
         const double line[3] = {m[row], m[4 + row], m[8 + row]};
         m[12 + row] -= dot(line, eye);
@@ -158,27 +181,25 @@ void view_derive(const camera *c, const view_frame *f, const double zone_origin[
                  view_volume *volume)
 {
     assert(!camera_fault(c) && f->width_px > 0 && f->height_px > 0);
-    double right[3], up[3], back[3];
-    camera_axes(c, right, up, back);
-    const double t = half_tangent(c), wide = t * c->aspect;
-    const double pixel = fmax(2 * t / f->height_px, 2 * wide / f->width_px);
-    cull_guard guard = {.pixel_tangent = pixel,
-                        .reach = sqrt((t + pixel) * (t + pixel) + (wide + pixel) * (wide + pixel) + 1),
-                        .radius = (double)cull_box_radius(*zone_box)};
+    const frustum_shape s = shape_of(c);
+    const double pixel = larger(2 * s.tall / f->height_px, 2 * s.wide / f->width_px);
+    const double tall = s.tall + pixel, wide = s.wide + pixel;
+    cull_guard guard = {
+        .pixel_tangent = pixel, .reach = sqrt((tall * tall + wide * wide) + 1), .radius = (double)cull_box_radius(*zone_box)};
     for (int i = 0; i < 3; i++) {
         guard.eye[i] = (c->eye[i] - zone_origin[i]) + 0.0; // never -0
-        guard.forward[i] = -back[i];
+        guard.forward[i] = -s.back[i];
     }
     memset(view, 0, sizeof *view);
     for (int i = 0; i < 3; i++) view->eye[i] = (float)guard.eye[i];
     view->eye[3] = 1;
-    matrix_derive(c, guard.eye, view->clip_from_zone);
-    view->pixels_per_tangent = (float)(f->height_px / (2 * t));
+    matrix_derive(c, &s, guard.eye, view->clip_from_zone);
+    view->pixels_per_tangent = (float)(f->height_px / (2 * s.tall));
     view->near_distance = (float)c->near_m;
     view->width_px = f->width_px;
     view->height_px = f->height_px;
     view->purpose = f->purpose;
     view->frame = f->frame;
     view->flags = f->flags;
-    volume_derive(c, &guard, right, up, zone_box, volume);
+    volume_derive(c, &guard, &s, zone_box, volume);
 }

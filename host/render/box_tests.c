@@ -3,8 +3,6 @@
 // Invariant: answers come oldest first; where memory fails, tests go unanswered, and an unanswered test counts as seen.
 #include "gl.h"
 
-#include <string.h>
-
 static const uint32_t SLOT_HIDDEN = 0xffffffffu, SLOT_SEEN = 0xfffffffeu; // known without drawing
 static const uint64_t WAIT_NS = 1000000000u;
 

@@ -4,7 +4,6 @@
 #include "gl.h"
 
 #include <assert.h>
-#include <string.h>
 
 static const float BACKGROUND[4] = {0.66f, 0.75f, 0.84f, 1}; // a hazy sky
 static const float TRANSLUCENT_ALPHA = 0.5f;
@@ -26,7 +25,7 @@ void frame_state_pass(renderer *g, blend blend, depth_writes depth)
 
 void frame_uniforms(renderer *g, const draw_pass *p, GLuint program, uint32_t wanted)
 {
-    const double near_m = g->frame.request.camera->near_m;
+    const double near_m = g->frame.view.near_m;
     const double far_m = 2 * scene_radius_m(g->scene.scene) + near_m * 2;
     viewpoint_set(p->view, program, wanted);
     glProgramUniform1f(program, AT_ALPHA, wanted ? TRANSLUCENT_ALPHA : 1);
@@ -53,7 +52,6 @@ void frame_bind(renderer *g)
 static void bind_blocks(renderer *g)
 {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_MATERIALS, g->scene.materials);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_TWO_SIDED, g->scene.two_sided);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_ITEMS, g->scene.triangle_items);
 }
 
@@ -77,6 +75,7 @@ result renderer_begin(renderer *g, const frame_request *q, report *r)
     if (f->target && q->mode == RENDER_OVERDRAW) f->layers = target_find(g, TARGET_LAYERS, q->width_px, q->height_px, r);
     if (!f->target || (q->mode == RENDER_OVERDRAW && !f->layers)) return RESULT_NO_GL;
     f->request = *q;
+    f->request.camera = NULL; // the caller's, and maybe gone before the frame is
     f->draw_calls = f->state_changes = f->translucent_count = 0;
     f->open = 1;
     bind_blocks(g);

@@ -40,13 +40,13 @@ enum { // vertex words: material below, then
     WORD_TRANSLUCENT = 1u << 16,
     WORD_CUT_OUT = 1u << 17,
     WORD_SKY = 1u << 18,
+    WORD_TWO_SIDED = 1u << 19, // of the triangle that this vertex is the last of
 };
 
 enum { // storage buffer bindings
     BIND_COUNTS = 0,
     BIND_MATERIALS = 1,
-    BIND_TWO_SIDED = 2,
-    BIND_ITEMS = 3,
+    BIND_ITEMS = 2,
 };
 
 enum { // uniform locations of scene.vert and frame.frag
@@ -133,7 +133,7 @@ typedef struct scene_gpu {
     const scene *scene; // NULL: none
     GLuint vertices;    // vertex array, with the index buffer in the scene's order
     GLuint positions, words, triangles, texcoords, normals, others, elements;
-    GLuint materials, two_sided, triangle_items, seen;
+    GLuint materials, triangle_items, seen;
     uint32_t *indices;         // each triangle turned so that its last vertex is its own
     uint32_t *see_through;     // items with translucent triangles, ascending
     uint8_t *is_see_through;   // per item

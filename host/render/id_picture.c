@@ -115,7 +115,6 @@ result renderer_id_picture(renderer *g, const id_request *q, report *r, id_pictu
     const uint32_t errors = g->errors;
     state_framebuffer(g, t->framebuffer, t->width_px, t->height_px);
     state_vertices(g, p->vertices);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_TWO_SIDED, p->two_sided);
     clear(g);
     draw_opaque(g, &v, q);
     if (p->see_through_count) draw_see_through(g, &v, q);

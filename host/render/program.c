@@ -63,8 +63,8 @@ static GLuint build(renderer *g, program_kind kind, uint32_t variant)
     const program_text text = text_of(kind);
     char head[512];
     snprintf(head, sizeof head,
-             "#version 450 core\n#define WORD_TRANSLUCENT %uu\n#define WORD_CUT_OUT %uu\n#define WORD_SKY %uu\n%s%s%s%s%s%s", (unsigned)WORD_TRANSLUCENT,
-             (unsigned)WORD_CUT_OUT, (unsigned)WORD_SKY, text.define, variant & VARIANT_CUT_OUT ? "#define CUT_OUT\n" : "",
+             "#version 450 core\n#define WORD_TRANSLUCENT %uu\n#define WORD_CUT_OUT %uu\n#define WORD_SKY %uu\n#define WORD_TWO_SIDED %uu\n%s%s%s%s%s%s", (unsigned)WORD_TRANSLUCENT,
+             (unsigned)WORD_CUT_OUT, (unsigned)WORD_SKY, (unsigned)WORD_TWO_SIDED, text.define, variant & VARIANT_CUT_OUT ? "#define CUT_OUT\n" : "",
              variant & VARIANT_TRANSLUCENT ? "#define TRANSLUCENT\n" : "", variant & VARIANT_SIDES ? "#define SIDES\n" : "",
              variant & VARIANT_CLIP ? "#define CLIP\n" : "", variant & VARIANT_KEEP_DEPTH ? "#define KEEP_DEPTH\n" : "");
     const char *const vertex_parts[] = {head, text.vertex};

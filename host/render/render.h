@@ -25,6 +25,8 @@ uint32_t renderer_errors(const renderer *g);   // GL errors seen so far (debug c
 result renderer_upload(renderer *g, const scene *s, report *r); // one scene at a time, borrowed until the next or close
 
 // ---- Truth: ascending global id, one program, one vertex buffer ----
+// Depths err away from the eye by 1/128 pixel of slope, never behind a triangle's farthest corner: rounding to the raster's
+// grid lets no surface seen edge on poke through what hides it. Box tests err towards the eye, so they find every owner.
 
 typedef struct id_picture {
     uint32_t width_px, height_px;

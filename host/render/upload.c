@@ -4,7 +4,6 @@
 // flat, in any draw and any order of the index buffer. (gl_PrimitiveID needs a base per draw and is 1.5x slower on llvmpipe.)
 #include "gl.h"
 
-#include <assert.h>
 #include <string.h>
 
 // Positions double where every vertex of a triangle is another's last already; about T - V + T/2 times in a closed mesh.
@@ -14,7 +13,6 @@ typedef struct upload {
     uint8_t *flags;    // per vertex: WORD_* >> 16
     buffer doubled;    // uint32_t: the vertex that is doubled
     buffer doubled_owners; // uint32_t: triangle
-    uint32_t *words;
 } upload;
 
 static result upload_open(const scene *s, const allocator *memory, upload *u)
@@ -91,11 +89,11 @@ static result turn_triangles(upload *u, uint32_t *indices)
     return RESULT_OK;
 }
 
-static GLuint buffer_of(const void *bytes, size_t size)
+static GLuint buffer_of(const void *bytes, size_t size) // bytes NULL: of undefined content
 {
     GLuint name = 0;
     glCreateBuffers(1, &name);
-    glNamedBufferStorage(name, (GLsizeiptr)(size ? size : 4), size ? bytes : NULL, GL_DYNAMIC_STORAGE_BIT);
+    glNamedBufferStorage(name, (GLsizeiptr)(size ? size : 4), bytes, GL_DYNAMIC_STORAGE_BIT);
     return name;
 }
 
@@ -120,14 +118,27 @@ static GLuint attribute_of(const upload *u, const void *bytes, size_t stride, co
     return name;
 }
 
-static GLuint words_of(const upload *u, const allocator *memory)
+static void mark_two_sided(const upload *u, const uint32_t *indices, uint32_t *words)
 {
-    const uint32_t count = u->s->position_count;
-    uint32_t *words = memory_alloc(memory, count, sizeof *words);
+    const scene *s = u->s;
+    for (uint32_t i = 0; i < s->item_count + s->mover_count; ++i) {
+        if (!(s->items[i].flags & CULL_ITEM_TWO_SIDED)) continue;
+        const uint32_t first = s->items[i].first_index, end = first + s->items[i].index_count;
+        for (uint32_t k = first; k < end; k += 3) words[indices[k + 2]] |= WORD_TWO_SIDED; // on the vertex that is its own
+    }
+}
+
+static GLuint words_of(const upload *u, const uint32_t *indices, const allocator *memory)
+{
+    const uint32_t *doubled = u->doubled.items;
+    const size_t count = u->s->position_count, all = count + u->doubled.count;
+    uint32_t *words = memory_alloc(memory, all, sizeof *words);
     if (!words) return 0;
-    for (uint32_t v = 0; v < count; ++v) words[v] = u->s->vertex_materials[v] | (uint32_t)u->flags[v] << 16;
-    const GLuint name = attribute_of(u, words, sizeof *words, memory);
-    memory_free(memory, words, count, sizeof *words);
+    for (size_t v = 0; v < count; ++v) words[v] = u->s->vertex_materials[v] | (uint32_t)u->flags[v] << 16;
+    for (size_t v = count; v < all; ++v) words[v] = words[doubled[v - count]];
+    mark_two_sided(u, indices, words);
+    const GLuint name = buffer_of(words, all * sizeof *words);
+    memory_free(memory, words, all, sizeof *words);
     return name;
 }
 
@@ -160,7 +171,7 @@ static result upload_vertices(scene_gpu *p, upload *u, const allocator *memory)
     const result turned = turn_triangles(u, p->indices);
     if (turned != RESULT_OK) return turned;
     p->positions = attribute_of(u, s->positions, sizeof *s->positions, memory);
-    p->words = words_of(u, memory);
+    p->words = words_of(u, p->indices, memory);
     p->triangles = triangles_of(u, memory);
     p->others = others_of(u, p->indices, memory);
     if (!p->positions || !p->words || !p->triangles || !p->others) return RESULT_NO_MEMORY;
@@ -180,17 +191,15 @@ static result upload_materials(scene_gpu *p, const scene *s, const allocator *me
     return RESULT_OK;
 }
 
-static void look_at_item(scene_gpu *p, const upload *u, uint32_t item, uint32_t *triangle_items, uint32_t *two_sided)
+static void look_at_item(scene_gpu *p, const upload *u, uint32_t item, uint32_t *triangle_items)
 {
     const scene_item *it = &u->s->items[item];
     for (uint32_t t = it->first_index / 3; t < (it->first_index + it->index_count) / 3; ++t) {
-        const uint32_t flags = u->flags[u->s->indices[(size_t)3 * t]];
+        const uint32_t flags = (uint32_t)u->flags[u->s->indices[(size_t)3 * t]] << 16;
         triangle_items[t] = item;
-        if (flags & (WORD_TRANSLUCENT >> 16)) p->is_see_through[item] = 1;
-        if (flags & (WORD_CUT_OUT >> 16) && p->texcoords) p->variant |= VARIANT_CUT_OUT;
-        if (!(it->flags & CULL_ITEM_TWO_SIDED)) continue;
-        two_sided[t >> 5] |= 1u << (t & 31);
-        if (!(flags & (WORD_TRANSLUCENT >> 16))) p->has_two_sided = 1;
+        if (flags & WORD_TRANSLUCENT) p->is_see_through[item] = 1;
+        else if (it->flags & CULL_ITEM_TWO_SIDED) p->has_two_sided = 1;
+        if (flags & WORD_CUT_OUT && p->texcoords) p->variant |= VARIANT_CUT_OUT;
     }
     if (!p->is_see_through[item]) return;
     p->see_through[p->see_through_count++] = item;
@@ -199,20 +208,14 @@ static void look_at_item(scene_gpu *p, const upload *u, uint32_t item, uint32_t 
 
 static result upload_triangles(scene_gpu *p, const upload *u, const allocator *memory)
 {
-    const size_t count = p->triangle_count, words = count / 32 + 1;
-    uint32_t *items = memory_alloc_zeroed(memory, count, sizeof *items);
-    uint32_t *two_sided = memory_alloc_zeroed(memory, words, sizeof *two_sided);
-    const result done = items && two_sided ? RESULT_OK : RESULT_NO_MEMORY;
-    if (done == RESULT_OK) {
-        for (uint32_t i = 0; i < p->item_total; ++i) look_at_item(p, u, i, items, two_sided);
-        p->triangle_items = buffer_of(items, count * sizeof *items);
-        p->two_sided = buffer_of(two_sided, words * sizeof *two_sided);
-        p->seen = buffer_of(two_sided, words * sizeof *two_sided); // cleared before use
-        p->counts = buffer_of(p->box_counts, p->item_total * sizeof(uint32_t));
-    }
-    memory_free(memory, items, count, sizeof *items);
-    memory_free(memory, two_sided, words, sizeof *two_sided);
-    return done;
+    uint32_t *items = memory_alloc_zeroed(memory, p->triangle_count, sizeof *items);
+    if (!items) return RESULT_NO_MEMORY;
+    for (uint32_t i = 0; i < p->item_total; ++i) look_at_item(p, u, i, items);
+    p->triangle_items = buffer_of(items, p->triangle_count * sizeof *items);
+    memory_free(memory, items, p->triangle_count, sizeof *items);
+    p->seen = buffer_of(NULL, (p->triangle_count / 32 + 1) * sizeof(uint32_t));
+    p->counts = buffer_of(NULL, p->item_total * sizeof(uint32_t));
+    return RESULT_OK;
 }
 
 static result reserve(renderer *g, scene_gpu *p)
@@ -317,7 +320,7 @@ void scene_release(renderer *g)
     scene_gpu *p = &g->scene; // the scene itself may be gone already
     if (!p->scene) return;
     const GLuint buffers[] = {p->positions, p->words, p->triangles, p->texcoords, p->normals, p->others, p->elements,
-                              p->materials, p->two_sided, p->triangle_items, p->seen, p->counts};
+                              p->materials, p->triangle_items, p->seen, p->counts};
     glDeleteVertexArrays(1, &p->vertices);
     glDeleteBuffers((GLsizei)(sizeof buffers / sizeof *buffers), buffers);
     memory_free(g->memory, p->indices, p->index_count, sizeof *p->indices);

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Bad input at the command line: `FILE:LINE: error: what and what to do`, exit code 2, nothing written, no crash.
 # SPDX-License-Identifier: MIT
-# usage: bad_input.sh PORTCULLIS TEST_PLUGINS
+# usage: bad_input.sh PORTCULLIS REFUSED_PLUGINS
 portcullis=$1
 plugins=$2
 . "$(dirname "$0")/check.sh"
@@ -70,8 +70,10 @@ holds 'nothing was generated' test ! -e castle.obj
 
 PORTCULLIS_PLUGIN_PATH=$work expect 'not a library' 2 'text.culler.so: error: refused: ' "$portcullis" bench good.obj --views auto:2 --culler text --no-truth
 if [ -d "$plugins" ]; then
-  for library in "$plugins"/*abi*.culler.so; do
-    expect 'another ABI number' 0 'refused .*ABI number' "$portcullis" plugins --plugin "$library"
+  for library in "$plugins"/abi-*.culler.so; do
+    expect 'another ABI number, listed' 0 'refused .*ABI number' "$portcullis" plugins --plugin "$library"
+    expect 'another ABI number, used' 2 'error: refused: .*ABI number' "$portcullis" bench good.obj --views auto:2 --no-truth --culler none --plugin "$library"
   done
+  expect 'no symbol' 2 'error: refused: .*cull_entry' "$portcullis" bench good.obj --views auto:2 --no-truth --culler none --plugin "$plugins/no-symbol.culler.so"
 fi
 finish

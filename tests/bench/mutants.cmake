@@ -33,4 +33,4 @@ portcullis_mutant(frustum takes-the-near-corner walk_body.h
   "p.normal.y >= 0 ? 64 : 16" "p.normal.y >= 0 ? 16 : 64")
 
 add_test(NAME bench_reports_mutants COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/mutants.sh $<TARGET_FILE:portcullis> ${PROJECT_BINARY_DIR}/mutants)
-set_tests_properties(bench_reports_mutants PROPERTIES TIMEOUT 600 RESOURCE_LOCK gl SKIP_RETURN_CODE 77)
+set_tests_properties(bench_reports_mutants PROPERTIES TIMEOUT ${PORTCULLIS_TEST_TIMEOUT} RESOURCE_LOCK gl SKIP_RETURN_CODE 77 LABELS "not_sanitized;not_by_clang")

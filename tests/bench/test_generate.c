@@ -296,6 +296,8 @@ static void the_demo_walk_passes_through_no_surface(void **state)
     probe p = probe_read(t.name);
     FILE *views = fopen(t.views, "r");
     assert_non_null(views);
+    const double in_the_hall[3] = {0.5, 1, -6}, above_the_roof[3] = {0.5, 8, -6};
+    assert_int_equal(probe_crossings(&p, in_the_hall, above_the_roof), 2); // ceiling and roof: the probe sees
     double eye[3], before[3], rest[10];
     int count = 0;
     while (fscanf(views, "%lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf %lf", &eye[0], &eye[1], &eye[2], &rest[0], &rest[1], &rest[2],

@@ -13,7 +13,7 @@ typedef struct folder { char path[64], file[80]; } folder;
 
 static folder make_folder(void)
 {
-    folder f = {.path = "/tmp/portcullis-png-XXXXXX"};
+    folder f = {.path = "portcullis-png-XXXXXX"};
     assert_non_null(mkdtemp(f.path));
     snprintf(f.file, sizeof f.file, "%s/a.png", f.path);
     return f;

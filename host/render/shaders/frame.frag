@@ -10,7 +10,7 @@ in vec3 v_normal;
 in vec3 v_eye;
 #endif
 #ifdef ITEMS
-layout(std430, binding = 3) readonly buffer item_block { uint triangle_items[]; };
+layout(std430, binding = 2) readonly buffer item_block { uint triangle_items[]; };
 #endif
 
 vec3 hashed_colour(uint n)

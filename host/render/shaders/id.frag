@@ -6,8 +6,9 @@ flat in float v_far_depth;
 
 void main()
 {
+    float depth = gl_FragCoord.z;
+    float slope = fwidth(depth); // before any discard: its neighbours must still be there
     if (surface_missing()) discard;
     owner = v_triangle + 1u;
-    float depth = gl_FragCoord.z;
-    gl_FragDepth = min(depth, max(depth - fwidth(depth) / 128.0, v_far_depth));
+    gl_FragDepth = min(depth, max(depth - slope / 128.0, v_far_depth));
 }

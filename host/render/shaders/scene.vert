@@ -15,7 +15,7 @@ flat out uint v_triangle;
 layout(location = 3) in vec2 texcoord;
 out vec2 v_texcoord;
 #endif
-#if defined(CUT_OUT) || defined(SHADED)
+#if defined(CUT_OUT) || defined(SHADED) || defined(SIDES)
 flat out uint v_word;
 #endif
 #ifdef SHADED
@@ -56,7 +56,7 @@ void main()
 #ifdef CUT_OUT
     v_texcoord = texcoord;
 #endif
-#if defined(CUT_OUT) || defined(SHADED)
+#if defined(CUT_OUT) || defined(SHADED) || defined(SIDES)
     v_word = word;
 #endif
 #ifdef SHADED

@@ -1,13 +1,10 @@
 // What every fragment of the scene asks first: is there any surface here?
 flat in uint v_triangle;
-#if defined(CUT_OUT) || defined(SHADED)
+#if defined(CUT_OUT) || defined(SHADED) || defined(SIDES)
 flat in uint v_word;
 #endif
 #ifdef CUT_OUT
 in vec2 v_texcoord;
-#endif
-#ifdef SIDES
-layout(std430, binding = 2) readonly buffer two_sided_block { uint two_sided[]; }; // a bit per triangle
 #endif
 
 // An alpha-tested surface is a grate: bars a quarter of a 1/4 texture wide, for no texture exists.
@@ -18,7 +15,7 @@ bool surface_missing()
     if ((v_word & WORD_CUT_OUT) != 0u && bar.x > 0.25 && bar.y > 0.25) return true;
 #endif
 #ifdef SIDES
-    if (!gl_FrontFacing && (two_sided[v_triangle >> 5] & (1u << (v_triangle & 31u))) == 0u) return true;
+    if (!gl_FrontFacing && (v_word & WORD_TWO_SIDED) == 0u) return true;
 #endif
     return false;
 }
