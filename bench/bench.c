@@ -156,8 +156,12 @@ static result compare_alone(run *b, uint32_t k, uint32_t view)
     return done;
 }
 
+// Without truth a pass of its own counts, and those that are timed mark nothing.
+static const uint32_t PASS_COUNTS = UINT32_MAX;
+
 static result run_pass(run *b, uint32_t pass, uint32_t k)
 {
+    const int has_truth = b->q->truth == BENCH_TRUTH, counts = has_truth ? pass == 0 : pass == PASS_COUNTS;
     strategy *s = &b->strategies[k];
     bench_row *row = &b->out->rows[k];
     if (b->g) renderer_forget_tests(b->g);
@@ -165,13 +169,15 @@ static result run_pass(run *b, uint32_t pass, uint32_t k)
     for (uint32_t v = 0; v < b->q->path->count; ++v) {
         strategy_view view;
         progress_tell(&b->bar, row->name);
-        result done = strategy_run_view(s, v, RENDER_SHADED, b->r, &view);
+        result done = strategy_run_view(s, &(strategy_request){v, RENDER_SHADED, has_truth || counts ? MARK_DRAWN : MARK_NOTHING}, b->r, &view);
         if (done != RESULT_OK) return done;
-        const size_t at = (size_t)pass * b->q->path->count + v;
-        s->cull_ns[at] = view.stats.cull_ns;
-        s->gl_ms[at] = view.gl_ms;
-        if (pass == 0) add_counts(row, s, &view);
-        if (b->q->truth != BENCH_TRUTH) continue;
+        if (counts) add_counts(row, s, &view);
+        if (pass != PASS_COUNTS) {
+            const size_t at = (size_t)pass * b->q->path->count + v;
+            s->cull_ns[at] = view.stats.cull_ns;
+            s->gl_ms[at] = view.gl_ms;
+        }
+        if (!has_truth) continue;
         const view_misses m = strategy_misses(s, &b->truth, v);
         missed_items += m.items;
         if (m.pixels > s->missed[v]) s->missed[v] = m.pixels;
@@ -186,6 +192,10 @@ static result run_pass(run *b, uint32_t pass, uint32_t k)
 static result run_passes(run *b)
 {
     const uint32_t count = b->q->strategy_count;
+    for (uint32_t k = 0; k < count && b->q->truth == BENCH_NO_TRUTH; ++k) {
+        const result done = run_pass(b, PASS_COUNTS, k);
+        if (done != RESULT_OK) return done;
+    }
     for (uint32_t pass = 0; pass < b->q->repeat; ++pass)
         for (uint32_t i = 0; i < count; ++i) {
             const result done = run_pass(b, pass, (i + pass) % count); // another one starts each pass
@@ -211,7 +221,8 @@ static result run_all(run *b)
     result done = open_strategies(b);
     if (done == RESULT_OK && needs_renderer(b)) done = open_renderer(b);
     const uint32_t truth_views = b->q->truth == BENCH_TRUTH ? b->q->path->count : 0;
-    b->bar = progress_start((uint64_t)truth_views + (uint64_t)b->q->path->count * b->q->strategy_count * b->q->repeat);
+    const uint64_t passes = (uint64_t)b->q->repeat + (b->q->truth == BENCH_NO_TRUTH);
+    b->bar = progress_start(truth_views + b->q->path->count * passes * b->q->strategy_count);
     if (done == RESULT_OK && truth_views) done = find_truth(b);
     if (done == RESULT_OK) done = run_passes(b);
     for (uint32_t k = 0; k < b->q->strategy_count && done == RESULT_OK; ++k) {

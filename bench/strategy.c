@@ -134,17 +134,17 @@ static void mark_set(strategy *s, const visible_set *set)
     for (uint32_t i = 0; i < set->mover_run_count; ++i) mark_run(s, set->mover_runs[i]);
 }
 
-result strategy_run_view(strategy *s, uint32_t view, render_mode mode, report *r, strategy_view *out)
+result strategy_run_view(strategy *s, const strategy_request *w, report *r, strategy_view *out)
 {
     const bench_request *q = s->q;
-    const frame_input input = {.camera = &q->path->cameras[view],
-                               .frame = {.width_px = q->width_px, .height_px = q->height_px, .frame = view + 1, .purpose = CULL_VIEW_MAIN},
+    const frame_input input = {.camera = &q->path->cameras[w->view],
+                               .frame = {.width_px = q->width_px, .height_px = q->height_px, .frame = w->view + 1, .flags = w->view ? 0 : CULL_VIEW_CUT, .purpose = CULL_VIEW_MAIN},
                                .driver = driver_of(s)};
-    memset(s->drawn_bits, 0, s->words * sizeof(uint32_t));
+    if (w->marks == MARK_DRAWN) memset(s->drawn_bits, 0, s->words * sizeof(uint32_t));
     *out = (strategy_view){0};
     double start = 0;
     if (s->g) {
-        const frame_request frame = {.camera = input.camera, .width_px = q->width_px, .height_px = q->height_px, .mode = mode};
+        const frame_request frame = {.camera = input.camera, .width_px = q->width_px, .height_px = q->height_px, .mode = w->mode};
         start = cpu_ns(CLOCK_PROCESS_CPUTIME_ID);
         const result begun = renderer_begin(s->g, &frame, r);
         if (begun != RESULT_OK) return begun;
@@ -158,7 +158,7 @@ result strategy_run_view(strategy *s, uint32_t view, render_mode mode, report *r
         out->state_changes = renderer_state_changes(s->g);
     }
     if (s->ids) write_ids(s, out);
-    mark_set(s, &out->set);
+    if (w->marks == MARK_DRAWN) mark_set(s, &out->set);
     return RESULT_OK;
 }
 

@@ -31,14 +31,21 @@ typedef struct strategy {
 result strategy_open(const bench_request *q, const chain_spec *spec, renderer *g, report *r, strategy *out);
 void strategy_close(strategy *s);
 
-// One view: culls, draws where there is a renderer, leaves D in drawn_bits. gl_ms: 0 without.
+// One view: culls, draws where there is a renderer. gl_ms: 0 without. Leaves D in drawn_bits, unless it is not wanted:
+// marking reads as much memory as culling, and would push the culler's out of the caches before the next view.
+typedef enum strategy_marks { MARK_DRAWN, MARK_NOTHING } strategy_marks;
+typedef struct strategy_request {
+    uint32_t view;
+    render_mode mode;
+    strategy_marks marks;
+} strategy_request;
 typedef struct strategy_view {
     frame_stats stats;
     visible_set set;
     double gl_ms;
     uint32_t draw_calls, state_changes;
 } strategy_view;
-result strategy_run_view(strategy *s, uint32_t view, render_mode mode, report *r, strategy_view *out);
+result strategy_run_view(strategy *s, const strategy_request *w, report *r, strategy_view *out);
 
 view_counts strategy_count(const strategy *s, const visible_set *set);
 view_misses strategy_misses(const strategy *s, const truth *t, uint32_t view);

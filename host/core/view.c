@@ -45,8 +45,8 @@ static int unit(const double v[3], double out[3])
         (void)frexp(largest, &exponent);
         for (int i = 0; i < 3; i++) scaled[i] = ldexp(v[i], -exponent);
     }
-    const double length = sqrt(dot(scaled, scaled));
-    for (int i = 0; i < 3; i++) out[i] = scaled[i] / length;
+    const double inverse = 1 / sqrt(dot(scaled, scaled));
+    for (int i = 0; i < 3; i++) out[i] = scaled[i] * inverse;
     return 1;
 }
 
@@ -83,7 +83,7 @@ void camera_axes(const camera *c, double right[3], double up[3], double back[3])
     (void)unit(side, right);
     for (int i = 0; i < 3; i++) back[i] = 0.0 - forward[i]; // not -0: bits of a matrix are compared
     cross(back, right, side);
-    (void)unit(side, up);
+    for (int i = 0; i < 3; i++) up[i] = side[i]; // of unit length as those two are at right angles
 }
 
 // Half the picture's height at distance 1.
@@ -146,9 +146,9 @@ static void volume_add(view_volume *volume, cull_plane plane, const cull_box *zo
 // The side of the picture where `axis` reaches `tangent`: through the eye, the picture inside.
 static void volume_add_side(view_volume *volume, const cull_guard *guard, const double axis[3], double tangent, const cull_box *zone_box)
 {
-    const double length = sqrt(1 + tangent * tangent);
+    const double inverse = 1 / sqrt(1 + tangent * tangent);
     double normal[3];
-    for (int i = 0; i < 3; i++) normal[i] = (axis[i] + tangent * guard->forward[i]) / length;
+    for (int i = 0; i < 3; i++) normal[i] = (axis[i] + tangent * guard->forward[i]) * inverse;
     volume_add(volume, cull_guard_plane(guard, normal, 0), zone_box);
 }
 

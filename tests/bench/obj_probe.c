@@ -89,7 +89,7 @@ probe probe_read(const char *path)
     assert_true(p.places && p.polygons && numbers);
     probe_polygon now = {0};
     for (char *line = text; *line;) {
-        char *end = strchr(line, '\n');
+        char *end = memchr(line, '\n', size - (size_t)(line - text));
         assert_non_null(end); // the last line ends too
         *end = 0;
         line_read(&p, line, &now);
