@@ -14,7 +14,7 @@ typedef struct run {
     const bench_request *q;
     report *r;
     renderer *g;
-    truth truth;
+    truth truths[WALLS_COUNT]; // opened where a strategy is judged by it
     strategy *strategies;
     bench_result *out;
     progress bar;
@@ -54,13 +54,20 @@ static result open_renderer(run *b)
     return RESULT_OK;
 }
 
-static result find_truth(run *b)
+static uint32_t truth_is_needed(const run *b, walls w)
 {
-    const truth_request request = {b->q->scene, b->q->width_px, b->q->height_px, FACES_ALL};
-    result done = truth_open(&request, b->q->services->memory, b->r, &b->truth);
+    for (uint32_t k = 0; k < b->q->strategy_count; ++k)
+        if (b->strategies[k].walls == w) return b->q->truth == BENCH_TRUTH;
+    return 0;
+}
+
+static result find_truth(run *b, walls w)
+{
+    const truth_request request = {b->q->scene, b->q->width_px, b->q->height_px, w};
+    result done = truth_open(&request, b->q->services->memory, b->r, &b->truths[w]);
     for (uint32_t v = 0; v < b->q->path->count && done == RESULT_OK; ++v) {
         progress_tell(&b->bar, "truth");
-        done = truth_add_view(&b->truth, b->g, &b->q->path->cameras[v], b->r);
+        done = truth_add_view(&b->truths[w], b->g, &b->q->path->cameras[v], b->r);
     }
     return done;
 }
@@ -146,12 +153,15 @@ static result compare_alone(run *b, uint32_t k, uint32_t view)
 {
     const camera *c = &b->q->path->cameras[view];
     const size_t pixels = (size_t)b->q->width_px * b->q->height_px;
+    truth *t = &b->truths[b->strategies[k].walls];
+    uint32_t *drawn = b->strategies[k].drawn_bits;
     id_picture alone;
     if (id_picture_open(b->q->scene, b->q->width_px, b->q->height_px, b->q->services->memory, &alone) != RESULT_OK) return report_no_memory(b->r, NULL);
-    const id_request all = {.camera = c}, drawn = {.camera = c, .item_bits = b->strategies[k].drawn_bits};
-    result done = renderer_id_picture(b->g, &all, b->r, &b->truth.picture);
-    if (done == RESULT_OK) done = renderer_id_picture(b->g, &drawn, b->r, &alone);
-    if (done == RESULT_OK) b->out->rows[k].picture_differs = memcmp(alone.triangles, b->truth.picture.triangles, pixels * sizeof(uint32_t)) != 0;
+    const id_request all = {.camera = c}, only = {.camera = c, .item_bits = drawn};
+    result done = truth_draw(t, b->g, &all, b->r);
+    for (uint32_t w = 0; t->shown_bits && w < b->strategies[k].words; ++w) drawn[w] &= t->shown_bits[w]; // backs that a culler kept in doubt
+    if (done == RESULT_OK) done = renderer_id_picture(b->g, &only, b->r, &alone);
+    if (done == RESULT_OK) b->out->rows[k].picture_differs = memcmp(alone.triangles, t->picture.triangles, pixels * sizeof(uint32_t)) != 0;
     id_picture_free(&alone, b->q->services->memory);
     return done;
 }
@@ -178,10 +188,11 @@ static result run_pass(run *b, uint32_t pass, uint32_t k)
             s->gl_ms[at] = view.gl_ms;
         }
         if (!has_truth) continue;
-        const view_misses m = strategy_misses(s, &b->truth, v);
+        const truth *t = &b->truths[s->walls];
+        const view_misses m = strategy_misses(s, t, v);
         missed_items += m.items;
         if (m.pixels > s->missed[v]) s->missed[v] = m.pixels;
-        if (pass == 0) add_truth(row, (const truth_view *)b->truth.views.items + v);
+        if (pass == 0) add_truth(row, (const truth_view *)t->views.items + v);
         if (pass == 0 && v == b->q->path->count / 2 && m.pixels == 0) done = compare_alone(b, k, v);
         if (done != RESULT_OK) return done;
     }
@@ -220,15 +231,16 @@ static result run_all(run *b)
 {
     result done = open_strategies(b);
     if (done == RESULT_OK && needs_renderer(b)) done = open_renderer(b);
-    const uint32_t truth_views = b->q->truth == BENCH_TRUTH ? b->q->path->count : 0;
     const uint64_t passes = (uint64_t)b->q->repeat + (b->q->truth == BENCH_NO_TRUTH);
-    b->bar = progress_start(truth_views + b->q->path->count * passes * b->q->strategy_count);
-    if (done == RESULT_OK && truth_views) done = find_truth(b);
+    const uint64_t truths = truth_is_needed(b, WALLS_BOTH_SIDES) + truth_is_needed(b, WALLS_FRONT_ONLY);
+    b->bar = progress_start(b->q->path->count * (truths + passes * b->q->strategy_count));
+    for (walls w = 0; w < WALLS_COUNT && done == RESULT_OK; ++w)
+        if (truth_is_needed(b, w)) done = find_truth(b, w);
     if (done == RESULT_OK) done = run_passes(b);
     for (uint32_t k = 0; k < b->q->strategy_count && done == RESULT_OK; ++k) {
         close_row(b, &b->out->rows[k], &b->strategies[k]);
         close_times(b, &b->out->rows[k], &b->strategies[k]);
-        if (b->q->images) done = bench_images(&b->strategies[k], &b->truth, &b->out->rows[k], b->r);
+        if (b->q->images) done = bench_images(&b->strategies[k], &b->truths[b->strategies[k].walls], &b->out->rows[k], b->r);
     }
     progress_end(&b->bar);
     b->out->plugins_opened = loader_libraries_open(b->q->plugins);
@@ -247,7 +259,7 @@ result bench_run(const bench_request *q, report *r, bench_result *out)
     b.scratch = memory_alloc(memory, scratch, sizeof *b.scratch);
     done = b.strategies && b.scratch ? run_all(&b) : report_no_memory(r, NULL);
     for (uint32_t k = 0; b.strategies && k < q->strategy_count; ++k) strategy_close(&b.strategies[k]);
-    truth_close(&b.truth);
+    for (walls w = 0; w < WALLS_COUNT; ++w) truth_close(&b.truths[w]);
     renderer_close(b.g);
     memory_free(memory, b.strategies, q->strategy_count, sizeof *b.strategies);
     memory_free(memory, b.scratch, scratch, sizeof *b.scratch);

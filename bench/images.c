@@ -18,7 +18,7 @@ static result mark_missed(strategy *s, truth *t, uint32_t view, report *r, uint8
 {
     const uint32_t width = s->q->width_px, height = s->q->height_px;
     const id_request all = {.camera = &s->q->path->cameras[view]};
-    const result done = renderer_id_picture(s->g, &all, r, &t->picture);
+    const result done = truth_draw(t, s->g, &all, r);
     if (done != RESULT_OK) return done;
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x) {

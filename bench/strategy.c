@@ -91,7 +91,7 @@ static int open_arrays(strategy *s)
 
 result strategy_open(const bench_request *q, const chain_spec *spec, renderer *g, report *r, strategy *out)
 {
-    *out = (strategy){.q = q, .g = g, .kernel = runs_kernel_best()};
+    *out = (strategy){.q = q, .g = g, .kernel = runs_kernel_best(), .walls = walls_of_chain(spec)};
     const chain_request build = {spec, q->scene, q->plugins, q->services};
     result done = chain_build(&build, r, &out->chain);
     if (done == RESULT_OK) done = viewer_open(out->chain, q->services, VIEWER_CHECK_BOUNDS, r, &out->viewer);

@@ -22,6 +22,7 @@ typedef struct strategy {
     uint32_t *order;       // chain's order, padded for runs_kernel.expand; NULL: none
     uint32_t *ids;         // for BENCH_IDS
     const runs_kernel *kernel;
+    walls walls; // which truth judges it
     double *cull_ns, *gl_ms; // repeat * views samples
     uint64_t *missed;        // pixels a view, the worst pass
     double ids_ns;

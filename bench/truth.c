@@ -21,7 +21,7 @@ static void fill_lookups(truth *t)
 result truth_open(const truth_request *q, const allocator *memory, report *r, truth *out)
 {
     const scene *s = q->scene;
-    *out = (truth){.scene = s, .memory = memory, .triangle_count = s->index_count / 3, .faces = q->faces};
+    *out = (truth){.scene = s, .memory = memory, .triangle_count = s->index_count / 3, .walls = q->walls};
     out->items = buffer_make(memory, sizeof(truth_item));
     out->views = buffer_make(memory, sizeof(truth_view));
     out->triangle_polygon = memory_alloc(memory, out->triangle_count, sizeof(uint32_t));
@@ -30,7 +30,8 @@ result truth_open(const truth_request *q, const allocator *memory, report *r, tr
     out->item_pixels = memory_alloc_zeroed(memory, all_items(s), sizeof(uint32_t));
     out->item_polygons = memory_alloc_zeroed(memory, all_items(s), sizeof(uint32_t));
     out->floor_bits = memory_alloc_zeroed(memory, (all_items(s) + 31) / 32, sizeof(uint32_t));
-    const int failed = !out->triangle_polygon || !out->polygon_item || !out->polygon_stamp || !out->item_pixels || !out->item_polygons ||
+    if (q->walls == WALLS_FRONT_ONLY) out->shown_bits = memory_alloc(memory, (all_items(s) + 31) / 32, sizeof(uint32_t));
+    const int failed = (q->walls == WALLS_FRONT_ONLY && !out->shown_bits) || !out->triangle_polygon || !out->polygon_item || !out->polygon_stamp || !out->item_pixels || !out->item_polygons ||
                        !out->floor_bits || id_picture_open(s, q->width_px, q->height_px, memory, &out->picture) != RESULT_OK;
     if (failed) {
         truth_close(out);
@@ -50,6 +51,7 @@ void truth_close(truth *t)
     memory_free(memory, t->item_pixels, all_items(t->scene), sizeof(uint32_t));
     memory_free(memory, t->item_polygons, all_items(t->scene), sizeof(uint32_t));
     memory_free(memory, t->floor_bits, (all_items(t->scene) + 31) / 32, sizeof(uint32_t));
+    memory_free(memory, t->shown_bits, (all_items(t->scene) + 31) / 32, sizeof(uint32_t));
     if (t->picture.triangles) id_picture_free(&t->picture, memory);
     buffer_free(&t->items);
     buffer_free(&t->views);
@@ -110,15 +112,24 @@ static void close_view(truth *t, truth_view *v)
 static uint64_t count_floor(const truth *t)
 {
     uint64_t count = 0;
-    for (uint32_t i = 0; i < t->scene->item_count; ++i) count += t->floor_bits[i / 32] >> (i % 32) & 1;
+    for (uint32_t i = 0; i < t->scene->item_count; ++i)
+        count += (t->shown_bits ? t->shown_bits[i / 32] & t->floor_bits[i / 32] : t->floor_bits[i / 32]) >> (i % 32) & 1;
     return count;
+}
+
+result truth_draw(truth *t, renderer *g, const id_request *q, report *r)
+{
+    id_request shown = *q;
+    if (t->shown_bits) walls_in_front(t->scene, q->camera, t->shown_bits);
+    shown.item_bits = t->shown_bits;
+    return renderer_id_picture(g, &shown, r, &t->picture);
 }
 
 result truth_add_view(truth *t, renderer *g, const camera *c, report *r)
 {
     truth_view view = {.first = (uint32_t)t->items.count};
-    const id_request q = {.camera = c, .faces = t->faces};
-    result done = renderer_id_picture(g, &q, r, &t->picture);
+    const id_request q = {.camera = c};
+    result done = truth_draw(t, g, &q, r);
     if (done == RESULT_OK) done = renderer_floor(g, c, r, t->floor_bits);
     if (done != RESULT_OK) return done;
     t->stamp++;
@@ -148,9 +159,9 @@ result truth_add_finer(truth *t, renderer *g, const camera *c, const truth_finer
     }
     t->stamp++;
     for (uint32_t i = 0; i < how->jitters && done == RESULT_OK; ++i) {
-        id_request q = {.camera = c, .faces = t->faces};
+        id_request q = {.camera = c};
         jitter_of(i, how->jitters, q.jitter_px);
-        done = renderer_id_picture(g, &q, r, &t->picture);
+        done = truth_draw(t, g, &q, r);
         if (done == RESULT_OK && !see_picture(t)) done = report_no_memory(r, t->scene->path);
     }
     id_picture_free(&t->picture, t->memory);

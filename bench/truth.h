@@ -7,6 +7,7 @@
 #include "../host/core/view.h"
 #include "../host/import/views.h"
 #include "../host/render/render.h"
+#include "walls.h"
 
 typedef struct truth_item {
     uint32_t item;     // global id
@@ -25,9 +26,10 @@ typedef struct truth {
     uint32_t *triangle_polygon, *polygon_item; // lookups
     uint32_t *polygon_stamp, *item_pixels, *item_polygons;
     uint32_t *floor_bits;
+    uint32_t *shown_bits; // items that the pictures hold; NULL: all
     uint32_t stamp, triangle_count;
     id_picture picture;
-    faces faces;
+    walls walls;
     buffer items; // truth_item
     buffer views; // truth_view, in the order added
 } truth;
@@ -35,12 +37,14 @@ typedef struct truth {
 typedef struct truth_request {
     const scene *scene;
     uint32_t width_px, height_px;
-    faces faces;
+    walls walls;
 } truth_request;
 
 // [main] The scene is borrowed and uploaded to the renderer already.
 result truth_open(const truth_request *q, const allocator *memory, report *r, truth *out);
 void truth_close(truth *t);
+// The picture of the view, into t->picture: what truth_add_view counts.
+result truth_draw(truth *t, renderer *g, const id_request *q, report *r);
 result truth_add_view(truth *t, renderer *g, const camera *c, report *r);
 // A view of its own whose items are those of all sub-pixel shifts, or of a larger picture: what CONSERVATIVE is tested
 // against. Its floor stays 0.

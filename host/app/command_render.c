@@ -89,7 +89,7 @@ static result draw(app *a, const arguments *q, const bench_request *bench, const
     uint8_t *rgba = memory_alloc(a->memory, bytes, 1);
     result done = rgba ? renderer_upload(g, a->scene, &a->report) : report_no_memory(&a->report, NULL);
     if (done == RESULT_OK) done = strategy_open(bench, spec, g, &a->report, &s);
-    const truth_request request = {a->scene, q->size.width_px, q->size.height_px, FACES_ALL};
+    const truth_request request = {a->scene, q->size.width_px, q->size.height_px, s.walls};
     if (done == RESULT_OK && q->picture.kind == PICTURE_ERROR) done = truth_open(&request, a->memory, &a->report, &t);
     if (done == RESULT_OK) done = picture_of(&s, &t, &q->picture, &a->report, rgba, &missed);
     if (done == RESULT_OK) done = png_write(q->out, rgba, q->size.width_px, q->size.height_px, &a->report);

@@ -28,5 +28,9 @@ for scene in "$scenes"/quake/*.map "$scenes"/librequake/*.map "$scenes"/city/*.o
   printf '%s: %s polygons visible a view\n' "$name" "$visible"
   true_that "$name: something is seen" "${visible:-0} > 0"
   rm -f "$work/out.json"
+  "$portcullis" bench "$scene" --views "$views" --size "$size" --repeat 1 --culler 'frustum[backface=1]' --json "$work/out.json" >"$work/table" 2>&1
+  is "$name: exit code without backs" "$?" 0
+  is "$name: missed pixels without backs" "$(same "$work/out.json" missed_pixels)" 0
+  rm -f "$work/out.json"
 done
 finish

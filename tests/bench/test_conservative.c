@@ -43,12 +43,12 @@ static void fixture_close(fixture *f)
 static uint64_t finer_misses(fixture *f, const bench_request *q, const char *chain)
 {
     static const truth_finer shifted = {16, 1}, larger = {1, 4};
-    const truth_request request = {q->scene, WIDTH, HEIGHT, FACES_ALL};
     chain_spec spec;
     strategy s;
     truth t;
     uint64_t misses = 0;
     assert_int_equal(chain_parse(chain, &f->texts, &f->report, &spec), RESULT_OK);
+    const truth_request request = {q->scene, WIDTH, HEIGHT, walls_of_chain(&spec)};
     assert_int_equal(strategy_open(q, &spec, NULL, &f->report, &s), RESULT_OK);
     assert_int_equal(truth_open(&request, q->services->memory, &f->report, &t), RESULT_OK);
     for (uint32_t v = 0; v < q->path->count; ++v) {
@@ -66,7 +66,7 @@ static uint64_t finer_misses(fixture *f, const bench_request *q, const char *cha
 
 static void check_scene(fixture *f, const char *file)
 {
-    const char *folder = getenv("PORTCULLIS_SCENES"), *chains[] = {"brute", "frustum", "frustum[isa=plain]"};
+    const char *folder = getenv("PORTCULLIS_SCENES"), *chains[] = {"brute", "frustum", "frustum[isa=plain]", "frustum[backface=1]"};
     const allocator *memory = allocator_heap();
     char path[1024], what[32];
     scene *s = NULL;
