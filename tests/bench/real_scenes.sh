@@ -25,7 +25,7 @@ for scene in "$scenes"/quake/*.map "$scenes"/librequake/*.map "$scenes"/city/*.o
   is "$name: one polygons_visible" "$(same "$work/out.json" polygons_visible | wc -l)" 1
   is "$name: brute and frustum draw the same" "$(counter "$work/out.json" polygons_drawn | tail -n 3 | sort -u | wc -l)" 1
   visible=$(same "$work/out.json" polygons_visible)
-  printf '%s: %s polygons visible a view\n' "$name" "$visible"
+  printf '%s %s %s %s visible, frustum draws %s\n' "$name" "$views" "$size" "$visible" "$(counter "$work/out.json" polygons_drawn | tail -n 1)"
   true_that "$name: something is seen" "${visible:-0} > 0"
   rm -f "$work/out.json"
   "$portcullis" bench "$scene" --views "$views" --size "$size" --repeat 1 --culler 'frustum[backface=1]' --json "$work/out.json" >"$work/table" 2>&1
