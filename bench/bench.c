@@ -74,9 +74,10 @@ static result find_truth(run *b, walls w)
 
 // ---- Counting ----
 
-static void add_counts(bench_row *row, const strategy *s, const strategy_view *v)
+static void add_counts(bench_row *row, const strategy *s, strategy_view *v)
 {
     const view_counts c = strategy_count(s, &v->set);
+    v->faults += v->stats.items_drawn > c.items; // more than there are: an item stands twice
     row->polygons_drawn += (double)c.polygons;
     row->triangles_drawn += (double)c.triangles;
     row->items_drawn += (double)c.items;
@@ -89,7 +90,6 @@ static void add_counts(bench_row *row, const strategy *s, const strategy_view *v
     row->portal_merges += v->stats.portal_merges;
     row->limits_hit += v->stats.limits_hit;
     row->stalls += v->stats.stalls;
-    row->faults += v->stats.faults;
 }
 
 static void add_truth(bench_row *row, const truth_view *t)
@@ -101,7 +101,7 @@ static void add_truth(bench_row *row, const truth_view *t)
     row->movers_visible += (double)t->mover_polygons_visible;
 }
 
-// Sums over the path become means; missed counts are the worst pass of each view.
+// Sums over the path become means; missed counts are the worst pass of each view, faults of the whole path.
 static void close_row(run *b, bench_row *row, const strategy *s)
 {
     const double views = b->q->path->count;
@@ -119,6 +119,7 @@ static void close_row(run *b, bench_row *row, const strategy *s)
         }
     }
     row->promises = s->chain->promises;
+    row->front_walls_only = s->walls == WALLS_FRONT_ONLY;
     row->build_ms = s->chain->build_ms;
     row->index_bytes = s->chain->index_bytes;
 }
@@ -174,14 +175,16 @@ static result run_pass(run *b, uint32_t pass, uint32_t k)
     const int has_truth = b->q->truth == BENCH_TRUTH, counts = has_truth ? pass == 0 : pass == PASS_COUNTS;
     strategy *s = &b->strategies[k];
     bench_row *row = &b->out->rows[k];
-    if (b->g) renderer_forget_tests(b->g);
-    uint64_t missed_items = 0;
+    uint64_t missed_items = 0, faults = 0;
+    const result fresh = strategy_restart(s, b->r);
+    if (fresh != RESULT_OK) return fresh;
     for (uint32_t v = 0; v < b->q->path->count; ++v) {
         strategy_view view;
         progress_tell(&b->bar, row->name);
         result done = strategy_run_view(s, &(strategy_request){v, RENDER_SHADED, has_truth || counts ? MARK_DRAWN : MARK_NOTHING}, b->r, &view);
         if (done != RESULT_OK) return done;
         if (counts) add_counts(row, s, &view);
+        faults += view.faults;
         if (pass != PASS_COUNTS) {
             const size_t at = (size_t)pass * b->q->path->count + v;
             s->cull_ns[at] = view.stats.cull_ns;
@@ -197,6 +200,7 @@ static result run_pass(run *b, uint32_t pass, uint32_t k)
         if (done != RESULT_OK) return done;
     }
     if (missed_items > row->missed_items) row->missed_items = missed_items;
+    if (faults > row->faults) row->faults = faults;
     return RESULT_OK;
 }
 

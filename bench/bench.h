@@ -38,6 +38,7 @@ typedef struct bench_row {
     double excess, excess_items, build_ms;
     uint64_t missed_pixels, missed_items, missed_pixels_max;
     uint64_t portal_merges, limits_hit, stalls, faults, index_bytes;
+    uint32_t front_walls_only; // judged by walls that face the eye only: excess does not compare with rows that are not
     uint32_t worst_view, picture_differs; // picture_differs: drawing D alone gave another picture than the truth
 } bench_row;
 

@@ -38,7 +38,8 @@ result picture_of(strategy *s, truth *t, const picture_request *q, report *r, ui
     strategy_view view;
     *out_missed = 0;
     const strategy_request request = {q->view, q->kind == PICTURE_ERROR ? RENDER_SHADED : q->mode, MARK_DRAWN};
-    result done = strategy_run_view(s, &request, r, &view);
+    result done = strategy_restart(s, r);
+    if (done == RESULT_OK) done = strategy_run_view(s, &request, r, &view);
     if (done == RESULT_OK) done = renderer_read(s->g, rgba, r);
     if (done == RESULT_OK && q->kind == PICTURE_ERROR) done = mark_missed(s, t, q->view, r, rgba, out_missed);
     return done;

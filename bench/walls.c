@@ -4,12 +4,17 @@
 
 #include <string.h>
 
-walls walls_of_chain(const chain_spec *spec)
+walls walls_of_chain(const chain *c, const chain_spec *spec)
 {
+    static const char *const key = "backface"; // reserved by culler.h for this
+    const cull_descriptor *d = c->stages[0].plugin->descriptor;
     const chain_stage_spec *select = &spec->stages[0];
+    const char *value = "0";
+    for (uint32_t i = 0; i < d->option_count; ++i)
+        if (strcmp(d->options[i].key, key) == 0) value = d->options[i].fallback;
     for (uint32_t i = 0; i < select->option_count; ++i)
-        if (strcmp(select->options[i].key, "backface") == 0 && strcmp(select->options[i].value, "1") == 0) return WALLS_FRONT_ONLY;
-    return WALLS_BOTH_SIDES;
+        if (strcmp(select->options[i].key, key) == 0) value = select->options[i].value;
+    return strcmp(value, "1") == 0 ? WALLS_FRONT_ONLY : WALLS_BOTH_SIDES;
 }
 
 static int triangle_faces(const scene *s, uint32_t first_index, const double eye[3])

@@ -48,8 +48,8 @@ static uint64_t finer_misses(fixture *f, const bench_request *q, const char *cha
     truth t;
     uint64_t misses = 0;
     assert_int_equal(chain_parse(chain, &f->texts, &f->report, &spec), RESULT_OK);
-    const truth_request request = {q->scene, WIDTH, HEIGHT, walls_of_chain(&spec)};
     assert_int_equal(strategy_open(q, &spec, NULL, &f->report, &s), RESULT_OK);
+    const truth_request request = {q->scene, WIDTH, HEIGHT, s.walls};
     assert_int_equal(truth_open(&request, q->services->memory, &f->report, &t), RESULT_OK);
     for (uint32_t v = 0; v < q->path->count; ++v) {
         strategy_view view;
