@@ -1,15 +1,18 @@
 // Tests of host/core/file: whole files in and out, or one line and nothing left behind.
 // SPDX-License-Identifier: MIT
-#define _POSIX_C_SOURCE 200809L
+#define _XOPEN_SOURCE 700
 #include "host/core/file.h"
 #include "tests/common/failing_allocator.h"
 #include "tests/common/report_lines.h"
 #include "tests/common/scratch_folder.h"
 #include "tests/common/test.h"
 
+#include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -121,7 +124,7 @@ static void writing_over_a_folder_leaves_only_the_folder(void **state)
     scratch_folder_name(&f->folder, "taken", path, sizeof path);
     assert_int_equal(mkdir(path, 0700), 0);
     assert_int_equal(write_name(f, "taken", "abc", 3), RESULT_BAD_INPUT);
-    assert_true(report_lines_is_one_with(&f->lines, "taken: error: cannot write it whole"));
+    assert_true(report_lines_is_one_with(&f->lines, "taken: error: is a folder; name a file in it"));
     assert_int_equal(scratch_folder_count(&f->folder), 1);
 }
 
@@ -134,19 +137,71 @@ static void a_name_of_any_length_is_refused_or_written(void **state)
     assert_true(report_lines_is_one_with(&f->lines, "nnn: error: the name is too long"));
 }
 
-static void a_full_disk_leaves_nothing(void **state)
+// The size limit of a process stands for the full disk: the write fails part of the way.
+static void a_write_that_runs_out_of_room_leaves_nothing(void **state)
 {
     fixture *f = *state;
-    if (access("/dev/full", W_OK) != 0) {
-        fprintf(stderr, "core file: no /dev/full here, the full disk is not tested\n");
-        skip();
-    }
-    char path[512];
-    scratch_folder_name(&f->folder, "x.part", path, sizeof path); // what file_write opens first
-    assert_int_equal(symlink("/dev/full", path), 0);
-    assert_int_equal(write_name(f, "x", "abc", 3), RESULT_BAD_INPUT);
+    struct rlimit before, small;
+    static const char bytes[8192] = "";
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &before), 0);
+    small = before;
+    small.rlim_cur = 4096;
+    void (*const handler)(int) = signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+    const result done = write_name(f, "x", bytes, sizeof bytes);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
+    signal(SIGXFSZ, handler);
+    assert_int_equal(done, RESULT_BAD_INPUT);
     assert_true(report_lines_is_one_with(&f->lines, "x: error: cannot write it whole"));
     assert_int_equal(scratch_folder_count(&f->folder), 0);
+}
+
+static void a_device_is_written_to_and_stays_a_device(void **state)
+{
+    fixture *f = *state;
+    struct stat status;
+    char path[512];
+    scratch_folder_name(&f->folder, "pipe", path, sizeof path);
+    assert_int_equal(mkfifo(path, 0600), 0);
+    const int reader = open(path, O_RDONLY | O_NONBLOCK);
+    assert_true(reader >= 0);
+    assert_int_equal(write_name(f, "pipe", "abc", 3), RESULT_OK);
+    char got[8];
+    assert_int_equal(read(reader, got, sizeof got), 3);
+    close(reader);
+    assert_int_equal(stat(path, &status), 0);
+    assert_true(S_ISFIFO(status.st_mode));
+}
+
+static void a_link_is_followed_and_the_mode_kept(void **state)
+{
+    fixture *f = *state;
+    struct stat status;
+    char link_path[512], file_path[512];
+    scratch_folder_name(&f->folder, "link", link_path, sizeof link_path);
+    scratch_folder_name(&f->folder, "file", file_path, sizeof file_path);
+    assert_int_equal(write_name(f, "file", "old", 3), RESULT_OK);
+    assert_int_equal(chmod(file_path, 0600), 0);
+    assert_int_equal(symlink(file_path, link_path), 0);
+    assert_int_equal(write_name(f, "link", "new!", 4), RESULT_OK);
+    assert_int_equal(lstat(link_path, &status), 0);
+    assert_true(S_ISLNK(status.st_mode));
+    assert_int_equal(stat(file_path, &status), 0);
+    assert_int_equal(status.st_size, 4);
+    assert_int_equal(status.st_mode & 0777, 0600);
+    assert_int_equal(scratch_folder_count(&f->folder), 2);
+}
+
+static void what_cannot_be_written_is_known_before(void **state)
+{
+    fixture *f = *state;
+    char path[512];
+    scratch_folder_name(&f->folder, "new", path, sizeof path);
+    assert_int_equal(file_can_write(path, &f->lines.report), RESULT_OK);
+    assert_int_equal(scratch_folder_count(&f->folder), 0);
+    scratch_folder_name(&f->folder, "missing/new", path, sizeof path);
+    assert_int_equal(file_can_write(path, &f->lines.report), RESULT_BAD_INPUT);
+    assert_true(report_lines_is_one_with(&f->lines, "missing/new: error: cannot be written: "));
 }
 
 int main(void)
@@ -161,7 +216,10 @@ int main(void)
         TEST(writing_into_a_missing_folder_leaves_nothing),
         TEST(writing_over_a_folder_leaves_only_the_folder),
         TEST(a_name_of_any_length_is_refused_or_written),
-        TEST(a_full_disk_leaves_nothing),
+        TEST(a_write_that_runs_out_of_room_leaves_nothing),
+        TEST(a_device_is_written_to_and_stays_a_device),
+        TEST(a_link_is_followed_and_the_mode_kept),
+        TEST(what_cannot_be_written_is_known_before),
     };
     return cmocka_run_group_tests_name("core file", tests, NULL, NULL);
 }
