@@ -37,6 +37,19 @@ static result open_strategies(run *b)
     return RESULT_OK;
 }
 
+// So that no frame allocates: as many tests a step and slots as the most demanding strategy.
+static result reserve(run *b)
+{
+    uint32_t tests = 0, slots = 0;
+    for (uint32_t k = 0; k < b->q->strategy_count; ++k)
+        for (uint32_t i = 0; i < b->strategies[k].chain->stage_count; ++i) {
+            const cull_built *built = &b->strategies[k].chain->stages[i].built;
+            tests = built->max_tests > tests ? built->max_tests : tests;
+            slots = built->slot_count > slots ? built->slot_count : slots;
+        }
+    return renderer_reserve(b->g, tests, slots, b->r);
+}
+
 // Only now is it known whether anything draws or tests.
 static result open_renderer(run *b)
 {
@@ -49,6 +62,8 @@ static result open_renderer(run *b)
     }
     if (done != RESULT_OK) return done;
     renderer_query_latency(b->g, b->q->query_latency);
+    done = reserve(b);
+    if (done != RESULT_OK) return done;
     b->out->gl_used = 1;
     snprintf(b->out->gl_name, sizeof b->out->gl_name, "%s", renderer_name(b->g));
     return RESULT_OK;

@@ -58,9 +58,14 @@ uint32_t bench_check_failed(const bench_row *row);
 
 typedef struct bench_labels { const char *scene, *path; } bench_labels; // for names and context
 
-// The table for people; free both texts with memory_free(memory, text, size + 1, 1).
-result bench_table(const bench_result *b, const bench_labels *labels, const allocator *memory, char **out_text, size_t *out_size);
-// Google Benchmark's JSON. What was not measured is null.
-result bench_json(const bench_result *b, const bench_request *q, const bench_labels *labels, char **out_text, size_t *out_size);
+typedef struct bench_text { // free with memory_free(q->services->memory, bytes, size + 1, 1)
+    char *bytes; // with a closing zero
+    size_t size;
+} bench_text;
+
+// The table for people. `-` stands where nothing was visible to divide by.
+result bench_table(const bench_result *b, const bench_request *q, const bench_labels *labels, bench_text *out);
+// Google Benchmark's JSON. What was not measured is null, and so is an excess where nothing was visible.
+result bench_json(const bench_result *b, const bench_request *q, const bench_labels *labels, bench_text *out);
 
 #endif

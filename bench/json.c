@@ -2,17 +2,17 @@
 // SPDX-License-Identifier: MIT
 #define _GNU_SOURCE
 #include "bench.h"
+#include "commit.h"
+#include "json_text.h"
 
 #include <jansson.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
 
-#ifndef PORTCULLIS_COMMIT
-#define PORTCULLIS_COMMIT "unknown"
-#endif
 #ifndef PORTCULLIS_VERSION
 #define PORTCULLIS_VERSION "unknown"
 #endif
@@ -49,36 +49,52 @@ static json_t *context_of(const bench_result *b, const bench_request *q, const b
     gethostname(host, sizeof host - 1);
     cpu_model(model, sizeof model);
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)q->scene->hash);
-    return json_pack("{s:s, s:s, s:i, s:s, s:o, s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:i, s:i, s:i, s:s, s:i}", "date", date, "host_name", host,
-                     "num_cpus", (int)sysconf(_SC_NPROCESSORS_ONLN), "cpu_model", model, "load_avg", load_average(), "library_version", PORTCULLIS_VERSION,
+    return json_pack("{s:s, s:o, s:i, s:o, s:o, s:s, s:s, s:s, s:o, s:o, s:s, s:i, s:i, s:i, s:i, s:o, s:i}", "date", date, "host_name", json_text(host),
+                     "num_cpus", (int)sysconf(_SC_NPROCESSORS_ONLN), "cpu_model", json_text(model), "load_avg", load_average(), "library_version", PORTCULLIS_VERSION,
                      "library_build_type",
 #ifdef NDEBUG
                      "release",
 #else
                      "debug",
 #endif
-                     "commit", PORTCULLIS_COMMIT, "gl_renderer", b->gl_used ? b->gl_name : "none", "scene", labels->scene, "scene_hash", hash,
+                     "commit", PORTCULLIS_COMMIT, "gl_renderer", json_text(b->gl_used ? b->gl_name : "none"), "scene", json_text(labels->scene), "scene_hash", hash,
                      "width_px", (int)q->width_px, "height_px", (int)q->height_px, "repeat", (int)q->repeat, "query_latency", (int)q->query_latency,
-                     "path", labels->path, "json_schema_version", 1);
+                     "path", json_text(labels->path), "json_schema_version", 1);
 }
 
 typedef struct counter { const char *name; double value; } counter;
+typedef enum measured { NOT_MEASURED, MEASURED } measured;
 
-static void set_counters(json_t *entry, const counter *counters, size_t count, int measured)
+static json_t *number_of(double value)
 {
-    for (size_t i = 0; i < count; ++i) {
-        const double value = counters[i].value;
-        json_t *number = !measured ? json_null() : value == (double)(json_int_t)value && value < 1e15 ? json_integer((json_int_t)value) : json_real(value);
-        json_object_set_new(entry, counters[i].name, number);
-    }
+    if (!isfinite(value)) return json_null();
+    if (fabs(value) < 1e15 && value == (double)(json_int_t)value) return json_integer((json_int_t)value);
+    return json_real(value);
+}
+
+static void set_counters(json_t *entry, const counter *counters, size_t count, measured how)
+{
+    for (size_t i = 0; i < count; ++i)
+        json_object_set_new(entry, counters[i].name, how == MEASURED ? number_of(counters[i].value) : json_null());
+}
+
+// By nothing, a ratio has no value.
+static double ratio_by(double ratio, double by)
+{
+    return by > 0 ? ratio : NAN;
+}
+
+static json_t *head_of(const bench_result *b, const bench_request *q, const bench_labels *labels, const bench_row *row)
+{
+    char name[8192];
+    snprintf(name, sizeof name, "%s/%s/%s", labels->scene, labels->path, row->name);
+    return json_pack("{s:o, s:o, s:s, s:i, s:i, s:f, s:f, s:s}", "name", json_text(name), "run_name", json_text(name), "run_type", "iteration", "repetitions",
+                     (int)q->repeat, "iterations", (int)(q->repeat * b->views), "real_time", row->cull_ns, "cpu_time", row->cull_ns, "time_unit", "ns");
 }
 
 static json_t *entry_of(const bench_result *b, const bench_request *q, const bench_labels *labels, const bench_row *row)
 {
-    char name[8192];
-    snprintf(name, sizeof name, "%s/%s/%s", labels->scene, labels->path, row->name);
-    json_t *entry = json_pack("{s:s, s:s, s:s, s:i, s:i, s:f, s:f, s:s}", "name", name, "run_name", name, "run_type", "iteration", "repetitions",
-                              (int)q->repeat, "iterations", (int)(q->repeat * b->views), "real_time", row->cull_ns, "cpu_time", row->cull_ns, "time_unit", "ns");
+    json_t *entry = head_of(b, q, labels, row);
     if (!entry) return NULL;
     const counter always[] = {
         {"views", b->views}, {"pixels", (double)b->pixels}, {"polygons_total", (double)b->polygons_total}, {"polygons_drawn", row->polygons_drawn},
@@ -90,15 +106,18 @@ static json_t *entry_of(const bench_result *b, const bench_request *q, const ben
     const counter of_gl[] = {{"gl_ms", row->gl_ms}, {"total_ms", row->total_ms}, {"draw_calls", row->draw_calls}, {"state_changes", row->state_changes}};
     const counter of_truth[] = {
         {"polygons_visible", row->polygons_visible}, {"polygons_items", row->polygons_items}, {"items_visible", row->items_visible}, {"floor", row->floor},
-        {"excess", row->excess}, {"excess_items", row->excess_items}, {"missed_pixels", (double)row->missed_pixels},
+        {"excess", ratio_by(row->excess, row->polygons_visible)}, {"excess_items", ratio_by(row->excess_items, row->polygons_items)},
+        {"missed_pixels", (double)row->missed_pixels},
         {"missed_items", (double)row->missed_items}, {"missed_pixels_max", (double)row->missed_pixels_max}, {"movers_visible", row->movers_visible}};
-    set_counters(entry, always, sizeof always / sizeof *always, 1);
-    set_counters(entry, of_gl, sizeof of_gl / sizeof *of_gl, b->gl_used != 0);
-    set_counters(entry, of_truth, sizeof of_truth / sizeof *of_truth, q->truth == BENCH_TRUTH);
+    const counter last[] = {{"front_walls_only", row->front_walls_only}};
+    set_counters(entry, always, sizeof always / sizeof *always, MEASURED);
+    set_counters(entry, of_gl, sizeof of_gl / sizeof *of_gl, b->gl_used ? MEASURED : NOT_MEASURED);
+    set_counters(entry, of_truth, sizeof of_truth / sizeof *of_truth, q->truth == BENCH_TRUTH ? MEASURED : NOT_MEASURED);
+    set_counters(entry, last, sizeof last / sizeof *last, MEASURED);
     return entry;
 }
 
-result bench_json(const bench_result *b, const bench_request *q, const bench_labels *labels, char **out_text, size_t *out_size)
+result bench_json(const bench_result *b, const bench_request *q, const bench_labels *labels, bench_text *out)
 {
     json_t *benchmarks = json_array(), *context = context_of(b, q, labels);
     json_t *root = benchmarks && context ? json_pack("{s:O, s:O}", "context", context, "benchmarks", benchmarks) : NULL;
@@ -110,9 +129,12 @@ result bench_json(const bench_result *b, const bench_request *q, const bench_lab
     json_decref(root);
     if (!text) return RESULT_NO_MEMORY;
     const allocator *memory = q->services->memory;
-    *out_size = strlen(text);
-    *out_text = memory_alloc(memory, *out_size + 1, 1);
-    if (*out_text) memcpy(*out_text, text, *out_size + 1);
+    const size_t size = strlen(text);
+    char *copy = memory_alloc(memory, size + 1, 1);
+    if (copy) {
+        memcpy(copy, text, size + 1);
+        *out = (bench_text){copy, size};
+    }
     free(text);
-    return *out_text ? RESULT_OK : RESULT_NO_MEMORY;
+    return copy ? RESULT_OK : RESULT_NO_MEMORY;
 }

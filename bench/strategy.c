@@ -249,8 +249,9 @@ view_counts strategy_count(const strategy *s, const visible_set *set)
 view_misses strategy_misses(const strategy *s, const truth *t, uint32_t view)
 {
     const truth_view *v = (const truth_view *)t->views.items + view;
-    const truth_item *items = (const truth_item *)t->items.items + v->first;
     view_misses m = {0};
+    if (!v->count) return m; // of a whole path that sees nothing there is no list
+    const truth_item *items = (const truth_item *)t->items.items + v->first;
     for (uint32_t i = 0; i < v->count; ++i) {
         if (s->drawn_bits[items[i].item / 32] >> (items[i].item % 32) & 1) continue;
         m.items++;

@@ -37,47 +37,65 @@ static const char *short_time(double ns, char out[16])
     return out;
 }
 
-static int put_row(buffer *text, const bench_result *b, const bench_row *row, int name_width, int has_truth)
+// Drawn by visible; "-" where nothing was visible.
+static const char *short_excess(const bench_row *row, char out[16])
 {
-    char t[4][16], n[6][16];
-    int good = put(text, "%-*s %10s %10s %8s %8s %8s", name_width, row->name, short_time(row->cull_ns, t[0]), short_time(row->cull_ns_p95, t[1]),
-                   short_count(row->items_drawn, n[0]), short_count(row->polygons_drawn, n[1]), short_count(row->runs, n[2]));
-    if (b->gl_used) good = good && put(text, " %9.2f %9.2f", row->gl_ms, row->total_ms);
-    if (has_truth)
-        good = good && put(text, " %8s %7.2f %9llu %7llu", short_count(row->polygons_visible, n[3]), row->excess,
-                           (unsigned long long)row->missed_pixels, (unsigned long long)row->missed_items);
-    return good && put(text, "  %s\n", bench_check_failed(row) ? "FAILED" : row->faults ? "faults" : "");
+    if (row->polygons_visible > 0) snprintf(out, 16, "%.2f", row->excess);
+    else snprintf(out, 16, "-");
+    return out;
 }
 
-static int put_all(buffer *text, const bench_result *b, const bench_labels *labels)
+typedef struct columns {
+    int name_width;
+    bench_truth truth;
+    uint32_t gl_used;
+} columns;
+
+static int put_marks(buffer *text, const bench_row *row)
+{
+    const char *check = bench_check_failed(row) ? "FAILED" : row->faults ? "faults" : "";
+    return put(text, "  %s%s%s\n", check, *check && row->front_walls_only ? " " : "", row->front_walls_only ? "front walls" : "");
+}
+
+static int put_row(buffer *text, const bench_row *row, const columns *c)
+{
+    char t[2][16], n[5][16];
+    int good = put(text, "%-*s %10s %10s %8s %8s %8s", c->name_width, row->name, short_time(row->cull_ns, t[0]), short_time(row->cull_ns_p95, t[1]),
+                   short_count(row->items_drawn, n[0]), short_count(row->polygons_drawn, n[1]), short_count(row->runs, n[2]));
+    if (c->gl_used) good = good && put(text, " %9.2f %9.2f", row->gl_ms, row->total_ms);
+    if (c->truth == BENCH_TRUTH)
+        good = good && put(text, " %8s %7s %9llu %7llu", short_count(row->polygons_visible, n[3]), short_excess(row, n[4]),
+                           (unsigned long long)row->missed_pixels, (unsigned long long)row->missed_items);
+    return good && put_marks(text, row);
+}
+
+static int put_all(buffer *text, const bench_result *b, const bench_request *q, const bench_labels *labels)
 {
     char n[2][16];
-    int width = 8, has_truth = 0;
-    for (uint32_t i = 0; i < b->row_count; ++i) {
-        if ((int)strlen(b->rows[i].name) > width) width = (int)strlen(b->rows[i].name);
-        has_truth |= b->rows[i].items_visible > 0;
-    }
+    columns c = {.name_width = 8, .truth = q->truth, .gl_used = b->gl_used};
+    for (uint32_t i = 0; i < b->row_count; ++i)
+        if ((int)strlen(b->rows[i].name) > c.name_width) c.name_width = (int)strlen(b->rows[i].name);
     int good = put(text, "%s, %u views of %s, %s items, %s polygons\n", labels->scene, b->views, labels->path,
                    short_count((double)b->items_total, n[0]), short_count((double)b->polygons_total, n[1]));
     if (b->gl_used) good = good && put(text, "drawn by %s\n", b->gl_name);
-    good = good && put(text, "%-*s %10s %10s %8s %8s %8s", width, "strategy", "cull", "p95", "items", "polygons", "runs");
+    good = good && put(text, "%-*s %10s %10s %8s %8s %8s", c.name_width, "strategy", "cull", "p95", "items", "polygons", "runs");
     if (b->gl_used) good = good && put(text, " %9s %9s", "gl ms", "total ms");
-    if (has_truth) good = good && put(text, " %8s %7s %9s %7s", "visible", "excess", "missed px", "items");
+    if (c.truth == BENCH_TRUTH) good = good && put(text, " %8s %7s %9s %7s", "visible", "excess", "missed px", "items");
     good = good && put(text, "\n");
-    for (uint32_t i = 0; i < b->row_count; ++i) good = good && put_row(text, b, &b->rows[i], width, has_truth);
+    for (uint32_t i = 0; i < b->row_count; ++i) good = good && put_row(text, &b->rows[i], &c);
     return good;
 }
 
-result bench_table(const bench_result *b, const bench_labels *labels, const allocator *memory, char **out_text, size_t *out_size)
+result bench_table(const bench_result *b, const bench_request *q, const bench_labels *labels, bench_text *out)
 {
+    const allocator *memory = q->services->memory;
     buffer text = buffer_make(memory, 1);
     char *copy = NULL;
-    if (put_all(&text, b, labels)) copy = memory_alloc(memory, text.count + 1, 1);
+    if (put_all(&text, b, q, labels)) copy = memory_alloc(memory, text.count + 1, 1);
     if (copy) {
         memcpy(copy, text.items, text.count);
         copy[text.count] = 0;
-        *out_text = copy;
-        *out_size = text.count;
+        *out = (bench_text){copy, text.count};
     }
     buffer_free(&text);
     return copy ? RESULT_OK : RESULT_NO_MEMORY;

@@ -41,11 +41,13 @@ typedef struct cull_run { uint32_t first, count; } cull_run;
 
 enum { // cull_item.flags
     CULL_ITEM_SEE_THROUGH = 1u << 0, // leaves no depth: hides nothing
-    CULL_ITEM_TWO_SIDED = 1u << 1,   // else only triangles counterclockwise from the eye leave pixels
+    CULL_ITEM_TWO_SIDED = 1u << 1,   // meant to be seen from both sides; see below for what leaves pixels
     CULL_ITEM_CUT_OUT = 1u << 2,     // alpha-tested: leaves depth at some texels only, no occluder
     CULL_ITEM_WALL = 1u << 3,        // one flat convex polygon: cull_zone.walls[item] is set
     CULL_ITEM_BOX = 1u << 4,         // the item's surface is its box
 };
+// Both sides of every triangle leave pixels, TWO_SIDED or not. One exception: a chain whose select has the option
+// `backface` set to 1 is judged with those walls that are not TWO_SIDED and show only their back to the eye left out.
 
 // The unit of visibility. Its id is its index in the zone's order.
 typedef struct cull_item {
@@ -91,7 +93,8 @@ typedef struct cull_zone {
 } cull_zone;
 
 // Extension "cull.hierarchy/1" of a culler: cull_hierarchy, valid and unchanged from build to destroy, in the zone's
-// order after the culler's own cull_built.order.
+// order after the culler's own cull_built.order. The host checks all of it once, before anyone walks it; boxes are
+// finite with min <= max, a node that lists nothing has one too.
 // Node 0 is the root. A node's children are contiguous and come after it, so one backward loop folds the tree upwards.
 // The boxes of the nodes that list an item cover it together: an item may be dropped when ALL nodes that list it are
 // hidden, and may be drawn when one is seen. Movers are never in it, so nothing ever invalidates it.
@@ -118,6 +121,12 @@ enum { // cull_view.flags
 };
 
 typedef struct cull_view {
+    // The view in double, for who derives planes of his own (cross): with the zone's radius the fields of cull_guard in
+    // plane.h. eye w 1; what they hold with w 0 is not settled.
+    double eye_exact[4];  // relative to the zone's origin; w as in eye
+    double forward[3];    // a unit vector
+    double pixel_tangent; // height (or width, the larger) of a pixel, at distance 1 along forward
+    double reach;         // the largest distance of a point of the picture, at distance 1 along forward
     float eye[4];             // w 1: a point. w 0: the direction towards an infinitely far viewer
     float clip_from_zone[16]; // column major, visible: -w <= x, y <= w and 0 <= z <= w, nearer is larger (reversed z)
     float pixels_per_tangent; // projected radius in pixels = this * radius / distance; w 0: this * radius
@@ -149,11 +158,14 @@ typedef struct cull_picture cull_picture;
 typedef struct cull_visit {
     const cull_view *view;
     const cull_volume *volumes; // the zone is seen through all of them: an item counts if any touches its box
-    const cull_run *candidates; // filter: runs of the culler before, each item once. NULL: walk the lent hierarchy
+    const cull_run *candidates; // filter: runs of the culler before, each item once, in no promised order. NULL: walk the
+                                // lent hierarchy, and leave out what the pictures kept stand for: a select that has
+                                // pictures has run, its runs are not handed on
     const cull_picture *pictures; // filter: pictures and captures of the culler before, see cull_batch.keep_*
     const cull_capture *captures;
     const cull_mover *movers;   // for who takes_movers: to be kept or dropped like items
-    const cull_answer *answers; // to any earlier tests of this query; not sorted
+    const cull_answer *answers; // to any earlier tests of this query; not sorted; at most 2 * max_tests + 1. After
+                                // CULL_WAIT every answer to that step's tests is here: older ones give way to them
     const uint8_t *slots;       // per picture slot: 1 holds the last capture, 0 empty. May change to 0 at any frame
     void *scratch;              // cull_built.scratch_size bytes, 64-byte aligned, of undefined content
     uint32_t volume_count, candidate_count, picture_count, capture_count, mover_count, answer_count;
@@ -166,14 +178,14 @@ typedef struct cull_visit {
 // "Could anything in this box leave a pixel?" Asked after all draws of this step, and maybe of other zones. The plugin
 // gives the plain box; the host widens it for its own rounding and answers "seen" when it reaches the near plane. Tests
 // given with CULL_MORE or CULL_WAIT are answered in a later step of the frame, age 0; with CULL_DONE in the first step
-// of a later frame, age >= 1.
+// of a later frame, age >= 1. So are tests given with CULL_MORE that no step of their frame got the answer to.
 typedef struct cull_test { cull_box box; uint32_t tag, reserved; } cull_test;
 
 // "Take a picture of these items from the view's eye." Pixel (u, v) in [0,1]^2 looks along corner + u*right + v*up - eye.
 // The same parallelogram is what a cull_picture of the slot later shows, so turning the view costs no error.
 struct cull_capture {
     const cull_run *runs;      // the culler's or query's, valid until the next step
-    const uint32_t *slots;     // pictures to compose in beside the items
+    const uint32_t *slots;     // pictures to compose in beside the items; earlier captures of the batch may fill them
     cull_plane clip_planes[4]; // items are clipped to what lies inside all of them
     cull_box box;              // of what it shows
     cull_vec3 corner, right, up;
@@ -192,14 +204,18 @@ struct cull_picture {
 };
 
 // runs and pictures are appended to over the steps of a frame, tests and captures start at 0 in each step.
-// After a step the host does, in this order: new runs, captures, new pictures, tests.
+// After a step the host does, in this order: new runs, captures one by one, new pictures, tests. What is drawn stays
+// drawn: runs of earlier steps may not be taken back, and writing over them changes nothing.
+// The pointers are the host's and stay: one that is replaced is a fault, and counts are looked at before lists.
+// A slot is a number of the one culler of a chain that has slots; a chain with two such cullers is refused.
 typedef struct cull_batch {
     cull_run *runs;          // room for max_runs; each item at most once in a frame; movers are runs of their ids
     cull_picture *pictures;  // room for max_pictures
     cull_test *tests;        // room for max_tests
     cull_capture *captures;  // room for max_captures
-    uint8_t *keep_pictures;  // filter: one byte a picture of the visit, 1 before the call; 0 drops it
-    uint8_t *keep_captures;  // filter: the same for captures
+    uint8_t *keep_pictures;  // filter: one byte a picture of the visit, 1 before the first step; 0 drops it
+    uint8_t *keep_captures;  // filter: the same for captures; one that a kept picture shows or a kept later capture is
+                             // composed of is carried out all the same
     uint32_t run_count, picture_count, test_count, capture_count;
     uint32_t nodes_visited; // for the bench, added to
     uint32_t limits_hit;    // for the bench, added to: times a limit made this culler draw more
@@ -225,7 +241,8 @@ typedef struct cull_host cull_host;
 struct cull_host {
     uint32_t abi;
     void *user;                                                          // the host's
-    void *(*alloc)(const cull_host *, size_t size, size_t align);        // [any, not in a step] NULL: out of memory
+    // [any, not in a step] align is a power of two. NULL: out of memory.
+    void *(*alloc)(const cull_host *, size_t size, size_t align);
     void (*free)(const cull_host *, void *memory, size_t size);          // [any, not in a step] size as asked for
     void (*log)(const cull_host *, cull_log_level, const char *message); // [any]
     // [build, step] Runs task(context, 0 .. count-1) in any order and returns when all are done.
@@ -241,7 +258,8 @@ enum { // held to by `portcullis check`
     CULL_CONSERVATIVE = 1u << 0, // never drops an item with a visible point, at any picture size
     CULL_SAMPLED = 1u << 1,      // never drops an item that owns a pixel sample of this view
     CULL_STATELESS = 1u << 2,    // the answer depends on zone, options, view and volumes only
-    CULL_ORDERED = 1u << 3,      // items come front to back
+    CULL_ORDERED = 1u << 3,      // runs come front to back: the box of the first item of a run is no farther from the eye
+                                 // (distance to the nearest point of the box) than that of the run behind it
 };
 
 // Told once, after build: all a host needs to size every array of a frame.
@@ -255,10 +273,13 @@ typedef struct cull_built {
     uint32_t max_steps;     // steps in one frame, 1 .. CULL_MAX_STEPS
     uint32_t max_tests, max_captures;  // in one step
     uint32_t max_pictures, slot_count; // in one frame; slots of one query
-    uint32_t walks_hierarchy; // filter: 1 walks the lent hierarchy, so the host runs no select; 0 takes candidates
+    uint32_t walks_hierarchy; // filter: 1 walks the lent hierarchy, so the host runs no select but one that has pictures,
+                              // and no filter between; 0 takes candidates
     uint32_t takes_movers;    // last of select and filters: 1 decides about movers too; 0 the host draws them
 } cull_built;
 
+// The key `backface` is reserved: a select's, "1": drops walls that are not TWO_SIDED and show only their back to the
+// eye, see CULL_ITEM_*.
 typedef struct cull_option {
     const char *key, *fallback; // fallback is a legal value
     const char *sweep;          // values worth a bench, space between; NULL: none
@@ -280,13 +301,14 @@ typedef struct cull_query cull_query;   // one viewer's memory of it
 // select and filters may return CULL_MORE or CULL_WAIT. Verbs are NULL-able, one at least is there.
 typedef struct cull_plugin {
     const cull_descriptor *descriptor;
-    // [main] values[i] belongs to options[i] and is never NULL. On failure logs why and leaves *out untouched.
+    // [main] values[i] belongs to options[i], is never NULL and lives for the call only: copy what is kept. On failure
+    // logs why and leaves *out untouched.
     cull_result (*create)(const cull_host *, const char *const *values, cull_culler **out);
     void (*destroy)(cull_culler *); // [main] no query open; also after a failed build
     // [build] once. lent: the hierarchy of the chain's select, NULL when it has none; outlives this culler. *out is
     // zeroed before the call.
     cull_result (*build)(cull_culler *, const cull_zone *, const cull_hierarchy *lent, cull_built *out);
-    cull_result (*open)(const cull_culler *, cull_query **out); // [main] built
+    cull_result (*open)(const cull_culler *, cull_query **out); // [main] built. On failure leaves *out untouched
     void (*close)(cull_query *);                                // [main]
     // [step] Items of the zone whose box touches a volume, or fewer. Between two steps of a frame the host may step
     // other zones and other views; depth only ever comes nearer, so a test answered 0 stays true for the frame.
@@ -294,6 +316,8 @@ typedef struct cull_plugin {
     // [step] The candidates (or the hierarchy's items inside the volumes) and movers that may be seen.
     cull_progress (*filter)(cull_query *, const cull_visit *, cull_batch *);
     // [step] How `in` goes on behind an open portal; planes has room for CULL_MAX_PLANES. Before any step of the frame.
+    // The planes written are guarded: made by cull_guard_plane, or cull_plane_outward where nothing moves with the eye
+    // (plane.h), from the view's eye_exact, forward, pixel_tangent and reach and the zone's radius.
     cull_crossing (*cross)(cull_query *, const cull_view *, const cull_volume *in, uint32_t portal, cull_plane *planes,
                            uint32_t *plane_count);
     const void *(*get_extension)(const cull_culler *, const char *id); // [any] after build; NULL when unknown

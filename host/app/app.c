@@ -46,15 +46,6 @@ static void add_beside_executable(app *a, folders *f)
     }
 }
 
-// A bare file name would be searched for by the system; it is meant to be a file.
-static const char *explicit_file(app *a, const char *name)
-{
-    char path[PATH_BYTES];
-    if (strchr(name, '/')) return name;
-    snprintf(path, sizeof path, "./%s", name);
-    return arena_text(&a->texts, path, strlen(path));
-}
-
 result app_open(app *a, const app_plugin_files *files)
 {
     *a = (app){.memory = allocator_heap(), .report = report_to_stderr()};
@@ -64,10 +55,10 @@ result app_open(app *a, const app_plugin_files *files)
     add_path_variable(a, &f);
     add_beside_executable(a, &f);
     loader_options options = {.folders = f.names, .folder_count = f.count};
-    const char *explicit_files[APP_PLUGINS_MOST];
-    for (uint32_t i = 0; files && i < files->count; ++i)
-        if ((explicit_files[options.file_count] = explicit_file(a, files->files[i]))) options.file_count++;
-    options.files = explicit_files;
+    if (files) {
+        options.files = files->files;
+        options.file_count = files->count;
+    }
     return loader_open(&options, a->memory, &a->report, &a->plugins);
 }
 

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { STRATEGIES_MOST = 64, ZONES_MOST = 256 };
 enum { KEY_VIEWS = 256, KEY_CULLER, KEY_ZONE, KEY_SIZE, KEY_REPEAT, KEY_NO_TRUTH, KEY_IDS, KEY_DOORS, KEY_IMAGES, KEY_LATENCY, KEY_JSON, KEY_PLUGIN };
@@ -97,6 +98,7 @@ static result parse_zones(app *a, const arguments *q, zone_override *out)
         const size_t length = equals ? (size_t)(equals - q->zones[i]) : 0;
         if (!equals || length != strlen(a->scene->zone.name) || memcmp(q->zones[i], a->scene->zone.name, length) != 0)
             return report_error(&a->report, NULL, 0, "--zone '%s': write NAME=CHAIN; the zones of this scene are: %s", q->zones[i], a->scene->zone.name);
+        if (out->chain) return report_error(&a->report, NULL, 0, "--zone '%s': that zone has a chain already; name it once", q->zones[i]);
         out->chain = equals + 1;
         if (strlen(suffix) + strlen(q->zones[i]) + 2 > sizeof suffix) return report_error(&a->report, NULL, 0, "--zone: too long");
         strcat(strcat(suffix, ","), q->zones[i]);
@@ -118,30 +120,36 @@ static result parse_strategy(app *a, const char *culler, const zone_override *zo
     return chain_parse(text, &a->texts, &a->report, spec);
 }
 
-static result print_text(const app *a, const char *text, size_t size, FILE *to)
+static void print_text(const bench_text *text, FILE *to)
 {
-    fwrite(text, 1, size, to);
-    memory_free(a->memory, (void *)text, size + 1, 1);
+    fwrite(text->bytes, 1, text->size, to);
+}
+
+static result write_json(app *a, const char *file, const bench_text *text)
+{
+    if (strcmp(file, "-") != 0) return file_write(file, text->bytes, text->size, &a->report);
+    print_text(text, stdout);
+    printf("\n");
     return RESULT_OK;
 }
 
+typedef struct output {
+    const bench_request *bench;
+    const bench_labels *labels;
+    const char *json; // file, "-" or NULL
+} output;
+
 // The table is for people where JSON goes to stdout.
-static result write_results(app *a, const arguments *q, const bench_request *bench, const bench_result *b, const bench_labels *labels)
+static result write_results(app *a, const output *o, const bench_result *b)
 {
-    char *text;
-    size_t size;
-    const int json_to_stdout = q->json && strcmp(q->json, "-") == 0;
-    if (bench_table(b, labels, a->memory, &text, &size) != RESULT_OK) return report_no_memory(&a->report, NULL);
-    print_text(a, text, size, json_to_stdout ? stderr : stdout);
-    if (!q->json) return RESULT_OK;
-    if (bench_json(b, bench, labels, &text, &size) != RESULT_OK) return report_no_memory(&a->report, NULL);
-    if (json_to_stdout) {
-        print_text(a, text, size, stdout);
-        printf("\n");
-        return RESULT_OK;
-    }
-    const result done = file_write(q->json, text, size, &a->report);
-    memory_free(a->memory, text, size + 1, 1);
+    bench_text text;
+    if (bench_table(b, o->bench, o->labels, &text) != RESULT_OK) return report_no_memory(&a->report, NULL);
+    print_text(&text, o->json && strcmp(o->json, "-") == 0 ? stderr : stdout);
+    memory_free(a->memory, text.bytes, text.size + 1, 1);
+    if (!o->json) return RESULT_OK;
+    if (bench_json(b, o->bench, o->labels, &text) != RESULT_OK) return report_no_memory(&a->report, NULL);
+    const result done = write_json(a, o->json, &text);
+    memory_free(a->memory, text.bytes, text.size + 1, 1);
     return done;
 }
 
@@ -175,10 +183,33 @@ static result run_bench(app *a, const arguments *q, const camera_path *path, uin
     if (!labels.scene) return report_no_memory(&a->report, NULL);
     bench_result results;
     done = bench_run(&bench, &a->report, &results);
+    if (done != RESULT_OK && q->images) (void)rmdir(q->images); // leaves it where something is in it
     if (done != RESULT_OK) return done;
-    done = write_results(a, q, &bench, &results, &labels);
+    done = write_results(a, &(output){&bench, &labels, q->json}, &results);
     *failed = tell_failures(a, &results);
     bench_result_free(&results);
+    return done;
+}
+
+static result check_chain(app *a, const char *text)
+{
+    chain_spec spec;
+    const cull_plugin *plugin;
+    result done = chain_parse(text, &a->texts, &a->report, &spec);
+    for (uint32_t i = 0; i < spec.stage_count && done == RESULT_OK; ++i) done = loader_find(a->plugins, spec.stages[i].id, &a->report, &plugin);
+    return done;
+}
+
+// What can be known before the scene is read is told before it.
+static result check_early(app *a, const arguments *q)
+{
+    result done = RESULT_OK;
+    for (uint32_t i = 0; i < q->culler_count && done == RESULT_OK && !q->zone_count; ++i) done = check_chain(a, q->cullers[i]);
+    for (uint32_t i = 0; i < q->zone_count && done == RESULT_OK; ++i) {
+        const char *equals = strchr(q->zones[i], '=');
+        if (equals) done = check_chain(a, equals + 1);
+    }
+    if (done == RESULT_OK && q->json && strcmp(q->json, "-") != 0) done = file_can_write(q->json, &a->report);
     return done;
 }
 
@@ -192,6 +223,7 @@ int command_bench(int argc, char **argv)
     uint32_t failed = 0;
     const import_options import = {.doors = q.doors};
     result done = app_open(&a, &q.plugins);
+    if (done == RESULT_OK) done = check_early(&a, &q);
     if (done == RESULT_OK) done = import_scene(q.scene, &import, a.memory, &a.report, &a.scene);
     if (done == RESULT_OK) done = camera_path_load(q.views, a.scene, (double)q.size.width_px / q.size.height_px, a.memory, &a.report, &path);
     if (done == RESULT_OK) done = run_bench(&a, &q, &path, &failed);

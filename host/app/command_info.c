@@ -32,16 +32,31 @@ static error_t parse(int key, char *text, struct argp_state *state)
     return 0;
 }
 
+typedef struct geometry { json_int_t polygons, triangles; } geometry;
+
+// A mover's polygons stand apart: the bench counts them apart too.
+static geometry geometry_of_movers(const scene *s)
+{
+    geometry g = {0, 0};
+    for (uint32_t i = s->item_count; i < s->item_count + s->mover_count; ++i) {
+        g.polygons += s->items[i].polygon_count;
+        g.triangles += s->items[i].index_count / 3;
+    }
+    return g;
+}
+
 static json_t *info_of(const scene *s)
 {
     const double *o = s->zone.origin;
     const cull_box b = s->zone.box;
+    const geometry movers = geometry_of_movers(s);
     json_t *bounds = json_pack("[f,f,f,f,f,f]", o[0] + b.min.x, o[1] + b.min.y, o[2] + b.min.z, o[0] + b.max.x, o[1] + b.max.y, o[2] + b.max.z);
     char hash[24];
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)s->hash);
-    return json_pack("{s:i, s:i, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:[f,f,f], s:f, s:I, s:I, s:s}", "zones", 1, "portals", 0, "items",
-                     (json_int_t)s->item_count, "objects", (json_int_t)s->object_count, "polygons", (json_int_t)s->polygon_count, "triangles",
-                     (json_int_t)(s->index_count / 3), "materials", (json_int_t)s->material_count, "movers", (json_int_t)s->mover_count, "bytes",
+    return json_pack("{s:i, s:i, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:[f,f,f], s:f, s:I, s:I, s:s}", "zones", 1, "portals", 0, "items",
+                     (json_int_t)s->item_count, "objects", (json_int_t)s->object_count, "polygons", (json_int_t)s->polygon_count - movers.polygons, "triangles",
+                     (json_int_t)(s->index_count / 3) - movers.triangles, "materials", (json_int_t)s->material_count, "movers", (json_int_t)s->mover_count,
+                     "mover_polygons", movers.polygons, "mover_triangles", movers.triangles, "bytes",
                      (json_int_t)s->memory.bytes, "bounds", bounds, "origin", o[0], o[1], o[2], "step", s->step, "flat_triangles",
                      (json_int_t)s->flat_triangles, "places", (json_int_t)s->place_count, "hash", hash);
 }

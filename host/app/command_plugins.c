@@ -1,5 +1,6 @@
 // portcullis plugins: cullers found, libraries refused.
 // SPDX-License-Identifier: MIT
+#include "../../bench/json_text.h"
 #include "app.h"
 
 #include <argp.h>
@@ -48,10 +49,10 @@ static json_t *plugin_json(const loaded_plugin *l)
     const cull_descriptor *d = l->plugin->descriptor;
     json_t *table = json_array();
     for (uint32_t i = 0; i < d->option_count; ++i)
-        json_array_append_new(table, json_pack("{s:s, s:s, s:s, s:s?}", "key", d->options[i].key, "default", d->options[i].fallback, "help",
-                                               d->options[i].help, "sweep", d->options[i].sweep));
-    return json_pack("{s:s, s:s, s:s, s:s, s:o, s:o, s:s}", "id", d->id, "version", d->version, "summary", d->summary, "verbs", verbs_of(l->plugin),
-                     "may_promise", promises_of(d->may_promise), "options", table, "path", l->path ? l->path : "built in");
+        json_array_append_new(table, json_pack("{s:o, s:o, s:o, s:o}", "key", json_text(d->options[i].key), "default", json_text(d->options[i].fallback),
+                                               "help", json_text(d->options[i].help), "sweep", json_text(d->options[i].sweep)));
+    return json_pack("{s:s, s:o, s:o, s:s, s:o, s:o, s:o}", "id", d->id, "version", json_text(d->version), "summary", json_text(d->summary), "verbs", verbs_of(l->plugin),
+                     "may_promise", promises_of(d->may_promise), "options", table, "path", json_text(l->path ? l->path : "built in"));
 }
 
 static void print_json(const loader *l)
@@ -62,7 +63,7 @@ static void print_json(const loader *l)
     for (uint32_t i = 0; i < count; ++i) json_array_append_new(found, plugin_json(&plugins[i]));
     const refused_plugin *refusals = loader_refusals(l, &count);
     for (uint32_t i = 0; i < count; ++i)
-        json_array_append_new(refused, json_pack("{s:s, s:s}", "path", refusals[i].path, "reason", refusals[i].reason));
+        json_array_append_new(refused, json_pack("{s:o, s:o}", "path", json_text(refusals[i].path), "reason", json_text(refusals[i].reason)));
     json_t *root = json_pack("{s:i, s:o, s:o}", "abi", (int)CULL_ABI, "plugins", found, "refused", refused);
     json_dumpf(root, stdout, JSON_INDENT(2));
     printf("\n");

@@ -1,6 +1,7 @@
 // portcullis render: one view, culled and drawn, to a PNG.
 // SPDX-License-Identifier: MIT
 #include "../../bench/images.h"
+#include "../core/file.h"
 #include "app.h"
 
 #include <argp.h>
@@ -126,6 +127,7 @@ int command_render(int argc, char **argv)
     camera_path path = {0};
     const import_options import = {.doors = q.doors};
     result done = app_open(&a, &q.plugins);
+    if (done == RESULT_OK) done = file_can_write(q.out, &a.report);
     if (done == RESULT_OK) done = import_scene(q.scene, &import, a.memory, &a.report, &a.scene);
     if (done == RESULT_OK) done = camera_path_load(q.views, a.scene, (double)q.size.width_px / q.size.height_px, a.memory, &a.report, &path);
     if (done == RESULT_OK) done = run_render(&a, &q, &path);

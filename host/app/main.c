@@ -3,6 +3,7 @@
 #include "app.h"
 
 #include <argp.h>
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -33,7 +34,7 @@ static void usage(FILE *to)
     fprintf(to, "\n`portcullis COMMAND --help` tells a command's options. Exit codes: 0 good, 1 a check failed, 2 bad usage or input, 3 no GL.\n");
 }
 
-int main(int argc, char **argv)
+static int run_command(int argc, char **argv)
 {
     argp_err_exit_status = EXIT_USAGE;
     if (argc < 2) {
@@ -57,5 +58,15 @@ int main(int argc, char **argv)
     }
     fprintf(stderr, "portcullis: error: no command '%s'\n", argv[1]);
     usage(stderr);
+    return EXIT_USAGE;
+}
+
+// What stdout still holds is written only here: a full disk must not look like success.
+int main(int argc, char **argv)
+{
+    const int code = run_command(argc, argv);
+    errno = 0;
+    if (fflush(stdout) == 0 && !ferror(stdout)) return code;
+    fprintf(stderr, "portcullis: error: cannot write to stdout: %s; make room, or send it elsewhere\n", errno ? strerror(errno) : "an earlier write failed");
     return EXIT_USAGE;
 }

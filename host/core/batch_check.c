@@ -7,29 +7,47 @@
 
 enum { PICTURE_PX_MOST = 16384 };
 
+// The lists are the host's: one that a culler put there instead may be anything.
+static const char *lists_fault(const cull_batch *lent, const cull_batch *batch)
+{
+    const int is_lent = batch->runs == lent->runs && batch->pictures == lent->pictures && batch->tests == lent->tests &&
+                        batch->captures == lent->captures && batch->keep_pictures == lent->keep_pictures &&
+                        batch->keep_captures == lent->keep_captures;
+    return is_lent ? NULL : "it replaced a list of the batch";
+}
+
+static const char *counts_fault(const viewer *v, const cull_batch *batch, const batch_check *check)
+{
+    const cull_built *b = &v->chain->stages[check->stage].built;
+    if (batch->run_count < check->runs || batch->picture_count < check->pictures) return "it took runs or pictures back";
+    if (batch->run_count > v->stages[check->stage].run_capacity) return "more runs than it told";
+    if (batch->test_count > b->max_tests) return "more tests than it told";
+    if (batch->capture_count > b->max_captures) return "more captures than it told";
+    return batch->picture_count > b->max_pictures ? "more pictures than it told" : NULL;
+}
+
 // Items and movers in one run would be drawn as items that do not exist.
-static const char *runs_fault(viewer *v, uint32_t stage, const cull_batch *batch)
+static const char *runs_fault(const viewer *v, const cull_batch *batch, batch_check *check)
 {
     const chain *c = v->chain;
     const uint32_t items = c->zone.item_count;
-    const uint32_t movers = stage == v->last && c->stages[stage].built.takes_movers ? c->zone.mover_capacity : 0;
+    const uint32_t movers = check->stage == v->last && c->stages[check->stage].built.takes_movers ? c->zone.mover_capacity : 0;
     uint64_t sum;
-    if (batch->run_count > v->stages[stage].run_capacity) return "more runs than it told";
-    if (!v->kernel->check(batch->runs, batch->run_count, items + movers, &sum)) return "a run outside the zone, or an empty one";
-    if (sum > (uint64_t)items + movers) return "an item given twice";
-    uint32_t mover_runs = 0;
-    for (uint32_t i = 0; movers && i < batch->run_count; ++i) {
+    if (!v->kernel->check(batch->runs + check->runs, batch->run_count - check->runs, items + movers, &sum)) return "a run outside the zone, or an empty one";
+    check->items += sum;
+    if (check->items > (uint64_t)items + movers) return "an item given twice";
+    for (uint32_t i = check->runs; movers && i < batch->run_count; ++i) {
         if (batch->runs[i].first < items && batch->runs[i].first + batch->runs[i].count > items) return "a run over items and movers";
-        mover_runs += batch->runs[i].first >= items;
+        check->mover_runs += batch->runs[i].first >= items;
     }
-    return mover_runs > movers ? "a mover given twice" : NULL; // more would not fit where they go apart from the items'
+    return check->mover_runs > movers ? "a mover given twice" : NULL; // more would not fit where they go apart from the items'
 }
 
-static const char *repeat_fault(viewer *v, const cull_batch *batch)
+static const char *repeat_fault(viewer *v, const cull_batch *batch, const batch_check *check)
 {
     uint64_t *seen = v->seen.items;
-    memset(seen, 0, v->seen.size);
-    for (uint32_t r = 0; r < batch->run_count; ++r)
+    if (check->runs == 0) memset(seen, 0, v->seen.size);
+    for (uint32_t r = check->runs; r < batch->run_count; ++r)
         for (uint32_t i = batch->runs[r].first; i < batch->runs[r].first + batch->runs[r].count; ++i) {
             if (seen[i / 64] >> (i % 64) & 1) return "an item given twice";
             seen[i / 64] |= (uint64_t)1 << (i % 64);
@@ -47,9 +65,8 @@ static int box_is_sound(const cull_box *b)
     return point_is_finite(b->min) && point_is_finite(b->max) && b->min.x <= b->max.x && b->min.y <= b->max.y && b->min.z <= b->max.z;
 }
 
-static const char *tests_fault(const viewer *v, uint32_t stage, const cull_batch *batch)
+static const char *tests_fault(const cull_batch *batch)
 {
-    if (batch->test_count > v->chain->stages[stage].built.max_tests) return "more tests than it told";
     for (uint32_t i = 0; i < batch->test_count; ++i)
         if (!box_is_sound(&batch->tests[i].box)) return "a test whose box is not finite or is inside out";
     return NULL;
@@ -63,41 +80,66 @@ static const char *lent_runs_fault(const viewer *v, const cull_run *runs, uint32
     return v->kernel->check(runs, count, v->chain->zone.item_count, &sum) ? NULL : "a picture of a run outside the zone";
 }
 
-static const char *capture_fault(const viewer *v, uint32_t stage, const cull_capture *c)
+// Captures run in order: one may be composed of what those before it fill, marked as they are checked.
+static int is_filled(const viewer *v, uint32_t slot)
 {
-    const uint32_t slot_count = v->chain->stages[stage].built.slot_count;
+    const uint8_t *marks = v->slot_marks.items;
+    return v->slots[slot] || marks[slot];
+}
+
+static const char *composed_fault(const viewer *v, const cull_capture *c, uint32_t slot_count)
+{
+    if (c->slot_count > slot_count || (c->slot_count && !c->slots)) return "a capture of slots that are not there";
+    for (uint32_t i = 0; i < c->slot_count; ++i)
+        if (c->slots[i] >= slot_count || c->slots[i] == c->slot || !is_filled(v, c->slots[i])) return "a capture of a slot that is empty";
+    return NULL;
+}
+
+static const char *capture_fault(const viewer *v, uint32_t slot_count, const cull_capture *c)
+{
     if (c->slot >= slot_count) return "a capture into a slot that is not there";
     if (c->width_px < 1 || c->height_px < 1 || c->width_px > PICTURE_PX_MOST || c->height_px > PICTURE_PX_MOST) return "a capture of no or too many pixels";
     if (!point_is_finite(c->corner) || !point_is_finite(c->right) || !point_is_finite(c->up) || !box_is_sound(&c->box)) return "a capture whose numbers are not finite";
     if (c->clip_plane_count > 4) return "a capture with over 4 clip planes";
     for (uint32_t i = 0; i < c->clip_plane_count; ++i)
         if (!point_is_finite(c->clip_planes[i].normal) || !isfinite(c->clip_planes[i].offset)) return "a capture whose clip planes are not finite";
-    if (c->slot_count > slot_count || (c->slot_count && !c->slots)) return "a capture of slots that are not there";
-    for (uint32_t i = 0; i < c->slot_count; ++i)
-        if (c->slots[i] >= slot_count || c->slots[i] == c->slot || !v->slots[c->slots[i]]) return "a capture of a slot that is empty";
-    return lent_runs_fault(v, c->runs, c->run_count);
+    const char *fault = composed_fault(v, c, slot_count);
+    return fault ? fault : lent_runs_fault(v, c->runs, c->run_count);
 }
 
-static const char *picture_fault(const viewer *v, uint32_t stage, const cull_batch *batch, const cull_picture *p)
+static const char *picture_fault(const viewer *v, uint32_t slot_count, const cull_picture *p)
 {
-    if (p->slot >= v->chain->stages[stage].built.slot_count) return "a picture of a slot that is not there";
-    uint32_t filled = v->slots[p->slot];
-    for (uint32_t i = 0; i < batch->capture_count; ++i) filled |= batch->captures[i].slot == p->slot;
-    if (!filled) return "a picture of a slot that is empty";
+    if (p->slot >= slot_count) return "a picture of a slot that is not there";
+    if (!is_filled(v, p->slot)) return "a picture of a slot that is empty";
     if (!(p->error_px >= 0) || !isfinite(p->error_px) || !box_is_sound(&p->box)) return "a picture whose numbers are not finite";
     return lent_runs_fault(v, p->runs, p->run_count);
 }
 
-const char *batch_fault(viewer *v, uint32_t stage, const cull_batch *batch, uint32_t earlier_runs, uint32_t earlier_pictures)
+// Captures first: what they fill the pictures may show.
+static const char *pictures_fault(viewer *v, uint32_t slot_count, const cull_batch *batch, const batch_check *check)
 {
-    const cull_built *b = &v->chain->stages[stage].built;
-    if (batch->run_count < earlier_runs || batch->picture_count < earlier_pictures) return "it took runs or pictures back";
-    const char *fault = runs_fault(v, stage, batch);
-    if (!fault && v->checks == VIEWER_CHECK_ALL) fault = repeat_fault(v, batch);
-    if (!fault) fault = tests_fault(v, stage, batch);
-    if (!fault && batch->capture_count > b->max_captures) fault = "more captures than it told";
-    if (!fault && batch->picture_count > b->max_pictures) fault = "more pictures than it told";
-    for (uint32_t i = 0; !fault && i < batch->capture_count; ++i) fault = capture_fault(v, stage, &batch->captures[i]);
-    for (uint32_t i = earlier_pictures; !fault && i < batch->picture_count; ++i) fault = picture_fault(v, stage, batch, &batch->pictures[i]);
+    uint8_t *marks = v->slot_marks.items;
+    const char *fault = NULL;
+    if (!batch->capture_count && batch->picture_count == check->pictures) return NULL;
+    memset(marks, 0, v->slot_count);
+    for (uint32_t i = 0; !fault && i < batch->capture_count; ++i) {
+        fault = capture_fault(v, slot_count, &batch->captures[i]);
+        if (!fault) marks[batch->captures[i].slot] = 1;
+    }
+    for (uint32_t i = check->pictures; !fault && i < batch->picture_count; ++i) fault = picture_fault(v, slot_count, &batch->pictures[i]);
+    return fault;
+}
+
+const char *batch_fault(viewer *v, const cull_batch *batch, batch_check *check)
+{
+    const uint32_t slot_count = v->chain->stages[check->stage].built.slot_count;
+    const char *fault = lists_fault(&check->lent, batch);
+    if (!fault) fault = counts_fault(v, batch, check);
+    if (!fault) fault = runs_fault(v, batch, check);
+    if (!fault && v->checks == VIEWER_CHECK_ALL) fault = repeat_fault(v, batch, check);
+    if (!fault) fault = tests_fault(batch);
+    if (!fault) fault = pictures_fault(v, slot_count, batch, check);
+    check->runs = batch->run_count;
+    check->pictures = batch->picture_count;
     return fault;
 }

@@ -3,6 +3,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "chain.h"
 
+#include "hierarchy_check.h"
+
 #include <string.h>
 #include <time.h>
 
@@ -133,10 +135,36 @@ static result stage_role_of(const cull_plugin *p, uint32_t place, uint32_t *cros
     return RESULT_OK;
 }
 
-static const cull_hierarchy *hierarchy_of_select(const chain *c)
+// Asked for and checked once, before anyone walks it.
+static result take_hierarchy(chain *c, report *r)
 {
     const chain_stage *select = &c->stages[0];
-    return select->plugin->get_extension(select->culler, CULL_EXT_HIERARCHY);
+    const cull_hierarchy *h = select->plugin->get_extension(select->culler, CULL_EXT_HIERARCHY);
+    const char *fault;
+    if (!h) return RESULT_OK;
+    if (hierarchy_check(h, &c->ordered_zone, c->memory.memory, &fault) != RESULT_OK) return report_no_memory(r, NULL);
+    if (fault) return report_error(r, NULL, 0, "culler '%s' lends a hierarchy that is nonsense: %s; mend the plugin", select->plugin->descriptor->id, fault);
+    c->hierarchy = h;
+    return RESULT_OK;
+}
+
+// What only the first stage has: order and hierarchy, for those behind it.
+static result take_layout(chain *c, report *r)
+{
+    c->order = c->stages[0].built.order;
+    result done = c->order ? order_is_permutation(c, c->stages[0].plugin->descriptor->id, r) : RESULT_OK;
+    if (done == RESULT_OK && zone_in_order(c) != RESULT_OK) done = report_no_memory(r, NULL);
+    return done == RESULT_OK && c->stage_count > 1 ? take_hierarchy(c, r) : done;
+}
+
+// A slot is a number of one stage, and a viewer has one set of them.
+static result slots_are_free(const chain *c, uint32_t place, report *r)
+{
+    if (!c->stages[place].built.slot_count) return RESULT_OK;
+    for (uint32_t i = 0; i < place; ++i)
+        if (c->stages[i].built.slot_count)
+            return report_error(r, NULL, 0, "cullers '%s' and '%s' both take pictures; one of a chain at most", c->stages[i].plugin->descriptor->id, c->stages[place].plugin->descriptor->id);
+    return RESULT_OK;
 }
 
 static result stage_build(chain *c, uint32_t place, const chain_request *q, report *r)
@@ -150,14 +178,11 @@ static result stage_build(chain *c, uint32_t place, const chain_request *q, repo
     if (code == CULL_OK) stage->culler = made;
     if (!stage->culler) return tell_failure(code != CULL_OK ? code : CULL_ERR_ZONE, stage, "create an index for", r);
     const cull_zone *zone = place == 0 ? &c->zone : &c->ordered_zone;
-    const cull_hierarchy *lent = place == 0 ? NULL : hierarchy_of_select(c);
-    code = stage->plugin->build(stage->culler, zone, lent, &stage->built);
+    code = stage->plugin->build(stage->culler, zone, c->hierarchy, &stage->built); // the first is lent none: it is not taken yet
     if (code != CULL_OK) return tell_failure(code, stage, "build", r);
-    done = built_is_sound(stage, lent, r);
-    if (done != RESULT_OK || place > 0) return done;
-    c->order = stage->built.order;
-    if (c->order) done = order_is_permutation(c, stage->plugin->descriptor->id, r);
-    return done != RESULT_OK ? done : zone_in_order(c) == RESULT_OK ? RESULT_OK : report_no_memory(r, NULL);
+    done = built_is_sound(stage, c->hierarchy, r);
+    if (done == RESULT_OK) done = slots_are_free(c, place, r);
+    return done == RESULT_OK && place == 0 ? take_layout(c, r) : done;
 }
 
 static void chain_sum_up(chain *c)

@@ -40,6 +40,7 @@ typedef struct chain {
     const uint32_t *order;  // order[place] = global item id; NULL: the same
     cull_zone zone;         // as lent to the select
     cull_zone ordered_zone; // as lent to the stages behind it; the same where order is NULL
+    const cull_hierarchy *hierarchy; // that the select lends, checked; NULL: it has none, or nobody stands behind it
     cull_promises promises; // of all of it: those that every stage gives
     uint32_t uses_renderer; // a stage may ask for tests or pictures
     double build_ms;        // CPU time

@@ -3,6 +3,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "viewer.h"
 
+#include <portcullis/plane.h>
+
 #include <string.h>
 #include <time.h>
 
@@ -16,7 +18,8 @@ typedef struct frame {
     cull_volume volume;
     cull_visit visit;
     struct timespec since; // cullers' time runs from here
-    uint32_t mover_count, answered;
+    uint32_t mover_count;
+    uint32_t has_stepped; // the set is the host's copy: the frame took more than one step
 } frame;
 
 static void time_start(frame *f)
@@ -34,23 +37,13 @@ static void time_stop(frame *f)
 
 // ---- Movers: the host's ----
 
-static int box_touches(const cull_volume *volume, const cull_box *b)
-{
-    for (uint32_t i = 0; i < volume->plane_count; ++i) {
-        const cull_plane *p = &volume->planes[i];
-        const float x = p->normal.x >= 0 ? b->max.x : b->min.x, y = p->normal.y >= 0 ? b->max.y : b->min.y, z = p->normal.z >= 0 ? b->max.z : b->min.z;
-        if (p->normal.x * x + p->normal.y * y + p->normal.z * z + p->offset < 0) return 0;
-    }
-    return 1;
-}
-
 static void find_movers(frame *f)
 {
     const scene *s = f->v->chain->scene;
     cull_mover *movers = f->v->movers.items;
     for (uint32_t i = s->item_count; i < s->item_count + s->mover_count; ++i) {
-        const cull_box box = {{s->boxes.min_x[i], s->boxes.min_y[i], s->boxes.min_z[i]}, {s->boxes.max_x[i], s->boxes.max_y[i], s->boxes.max_z[i]}};
-        if (box_touches(&f->volume, &box)) movers[f->mover_count++] = (cull_mover){box, i, 0};
+        const cull_box box = cull_box_at(&s->boxes, i);
+        if (cull_volume_touches(&f->volume, box)) movers[f->mover_count++] = (cull_mover){box, i, 0};
     }
     f->stats->movers_tested = s->mover_count;
 }
@@ -70,17 +63,36 @@ static uint32_t draw_movers(frame *f)
 
 // ---- Carrying out batches ----
 
+// The list is full and there are more: those of earlier frames go, then the oldest. Answers come oldest first, so the
+// newest max_tests of them hold all of the step that waits.
+static uint32_t make_room(cull_answer *answers, uint32_t count, uint32_t keep_most)
+{
+    uint32_t facts = 0;
+    for (uint32_t i = 0; i < count; ++i)
+        if (answers[i].age == 0) answers[facts++] = answers[i];
+    if (facts <= keep_most) return facts;
+    memmove(answers, answers + (facts - keep_most), keep_most * sizeof *answers);
+    return keep_most;
+}
+
 static void collect_answers(frame *f, collect_how how)
 {
     const frame_driver *d = &f->q->driver;
-    uint32_t stalled = 0;
+    const uint32_t capacity = f->v->answer_capacity, room = how == COLLECT_EVERYTHING ? capacity : capacity - 1;
+    cull_answer *answers = f->v->answers.items;
+    uint32_t stalled = 0, count = 0;
     f->visit.answer_count = 0;
-    if (!d->collect || !f->v->answer_capacity) return;
+    if (!d->collect || !capacity) return;
     time_stop(f);
-    const uint32_t got = d->collect(d->user, how, f->q->frame.frame, f->v->answers.items, f->v->answer_capacity, &stalled);
+    for (;;) {
+        const uint32_t got = d->collect(d->user, how, f->q->frame.frame, answers + count, room - count, &stalled);
+        count += got < room - count ? got : room - count;
+        if (how != COLLECT_EVERYTHING || count < room) break;
+        count = make_room(answers, count, capacity / 2);
+    }
     time_start(f);
-    f->visit.answer_count = got < f->v->answer_capacity ? got : f->v->answer_capacity;
-    f->visit.answers = f->v->answers.items;
+    f->visit.answer_count = count;
+    f->visit.answers = answers;
     f->stats->stalls += stalled != 0;
 }
 
@@ -134,30 +146,38 @@ static cull_batch batch_of_filter(frame *f, uint32_t stage)
     return (cull_batch){.runs = v->stages[stage].runs.items, .keep_captures = v->keep_captures.items, .keep_pictures = v->keep_pictures.items};
 }
 
-static int picture_has_slot(const frame *f, const cull_picture *p)
+// What a kept picture shows, and what a kept capture is composed of, is kept too: dropping it would leave a hole, or show
+// what the slot held before.
+static void keep_what_is_needed(frame *f, uint8_t *keep_capture, const uint8_t *keep_picture)
 {
-    int filled = f->v->slots[p->slot];
-    for (uint32_t i = 0; i < f->visit.capture_count; ++i) filled |= f->visit.captures[i].slot == p->slot;
-    return filled;
+    uint8_t *needed = f->v->slot_marks.items;
+    memset(needed, 0, f->v->slot_count);
+    for (uint32_t i = 0; i < f->visit.picture_count; ++i)
+        if (keep_picture[i]) needed[f->visit.pictures[i].slot] = 1;
+    for (uint32_t i = f->visit.capture_count; i-- > 0;) {
+        const cull_capture *c = &f->visit.captures[i];
+        if (!keep_capture[i] && !needed[c->slot]) continue;
+        keep_capture[i] = 1;
+        for (uint32_t k = 0; k < c->slot_count; ++k) needed[c->slots[k]] = 1;
+    }
 }
 
-// After a filter: of the select's captures and pictures only those that it kept. NULL, or what is wrong with its choice.
-static const char *drop_unkept(frame *f)
+// After a filter: of the select's captures and pictures only those that it kept.
+static void drop_unkept(frame *f)
 {
     viewer *v = f->v;
     cull_capture *captures = v->select_captures.items;
     cull_picture *pictures = v->select_pictures.items;
-    const uint8_t *keep_capture = v->keep_captures.items, *keep_picture = v->keep_pictures.items;
+    uint8_t *keep_capture = v->keep_captures.items, *keep_picture = v->keep_pictures.items;
     uint32_t kept_captures = 0, kept_pictures = 0;
+    if (!f->visit.capture_count && !f->visit.picture_count) return;
+    keep_what_is_needed(f, keep_capture, keep_picture);
     for (uint32_t i = 0; i < f->visit.capture_count; ++i)
         if (keep_capture[i]) captures[kept_captures++] = captures[i];
     for (uint32_t i = 0; i < f->visit.picture_count; ++i)
         if (keep_picture[i]) pictures[kept_pictures++] = pictures[i];
     f->visit.capture_count = kept_captures;
     f->visit.picture_count = kept_pictures;
-    for (uint32_t i = 0; i < kept_pictures; ++i)
-        if (!picture_has_slot(f, &pictures[i])) return "it drops a capture and keeps its picture";
-    return NULL;
 }
 
 // A stage before the last: one call, its runs become the next one's candidates. 0 on nonsense.
@@ -168,15 +188,16 @@ static int run_early_stage(frame *f, uint32_t stage)
     b.tests = v->early_tests.items;
     b.captures = stage == 0 ? v->select_captures.items : v->early_captures.items;
     b.pictures = stage == 0 ? v->select_pictures.items : v->early_pictures.items;
+    batch_check check = {.stage = stage, .lent = b};
     const cull_progress progress = call(f, stage, &b);
-    const char *fault = progress != CULL_DONE ? "it steps, but is not the last select or filter of its chain" : batch_fault(v, stage, &b, 0, 0);
+    const char *fault = progress != CULL_DONE ? "it steps, but is not the last select or filter of its chain" : batch_fault(v, &b, &check);
     if (!fault && b.test_count) fault = "it asks for tests, but is not the last select or filter of its chain";
     if (!fault && stage > 0 && (b.capture_count || b.picture_count)) fault = "it gives pictures, but is neither first nor last of its chain";
-    if (!fault && stage > 0) fault = drop_unkept(f);
     if (fault) {
         tell_fault(f, stage, fault);
         return 0;
     }
+    if (stage > 0) drop_unkept(f);
     take_counts(f, &b);
     f->visit.candidates = b.runs;
     f->visit.candidate_count = b.run_count;
@@ -196,35 +217,50 @@ static void carry_out_kept(frame *f)
     if (kept.capture_count || kept.picture_count) carry_out(f, &kept, 0, 0);
 }
 
+static const char *step_fault(frame *f, const cull_batch *b, cull_progress progress, batch_check *check)
+{
+    const char *fault = batch_fault(f->v, b, check);
+    if (fault || progress == CULL_DONE) return fault;
+    if (progress != CULL_MORE && progress != CULL_WAIT) return "it returned neither DONE, MORE nor WAIT";
+    return f->visit.step + 1 >= f->v->chain->stages[check->stage].built.max_steps ? "it wants more steps than it told" : NULL;
+}
+
+// What is drawn cannot be taken back: later steps may write over the batch, not over this.
+static void remember_drawn(frame *f, const cull_batch *b, uint32_t earlier_runs)
+{
+    cull_run *drawn = f->v->drawn.items;
+    f->has_stepped = 1;
+    memcpy(drawn + earlier_runs, b->runs + earlier_runs, (b->run_count - earlier_runs) * sizeof *drawn);
+}
+
 // The stage that may step. Returns its runs, or UINT32_MAX on nonsense.
 static uint32_t run_last_stage(frame *f)
 {
     viewer *v = f->v;
     const uint32_t stage = v->last;
-    const cull_built *built = &v->chain->stages[stage].built;
     cull_batch b = batch_of_filter(f, stage);
     b.pictures = v->pictures.items;
     b.tests = v->tests.items;
     b.captures = v->captures.items;
+    batch_check check = {.stage = stage, .lent = b};
     collect_answers(f, COLLECT_WHAT_IS_READY);
     for (uint32_t step = 0;; ++step) {
-        const uint32_t earlier_runs = b.run_count, earlier_pictures = b.picture_count;
+        const uint32_t earlier_runs = check.runs, earlier_pictures = check.pictures;
         b.test_count = b.capture_count = 0;
         f->visit.step = step;
         const cull_progress progress = call(f, stage, &b);
-        const char *fault = batch_fault(v, stage, &b, earlier_runs, earlier_pictures);
-        if (!fault && progress != CULL_DONE && progress != CULL_MORE && progress != CULL_WAIT) fault = "it returned neither DONE, MORE nor WAIT";
-        if (!fault && progress != CULL_DONE && step + 1 >= built->max_steps) fault = "it wants more steps than it told";
-        if (!fault && progress == CULL_DONE && stage > 0) fault = drop_unkept(f);
+        const char *fault = step_fault(f, &b, progress, &check);
         if (fault) {
             tell_fault(f, stage, fault);
             return UINT32_MAX;
         }
+        if (step > 0 || progress != CULL_DONE) remember_drawn(f, &b, earlier_runs);
         if (b.run_count > earlier_runs || b.test_count || b.capture_count || b.picture_count > earlier_pictures)
             if (f->q->driver.draw || b.test_count || b.capture_count || b.picture_count) carry_out(f, &b, earlier_runs, earlier_pictures);
         if (progress == CULL_DONE) break;
         collect_answers(f, progress == CULL_WAIT ? COLLECT_EVERYTHING : COLLECT_WHAT_IS_READY);
     }
+    if (stage > 0) drop_unkept(f);
     take_counts(f, &b);
     if (stage > 0) carry_out_kept(f);
     return b.run_count;
@@ -246,7 +282,7 @@ static void finish_set(frame *f, uint32_t run_count, visible_set *out)
 {
     viewer *v = f->v;
     const uint32_t items = v->chain->zone.item_count;
-    cull_run *runs = v->stages[v->last].runs.items;
+    cull_run *runs = f->has_stepped ? v->drawn.items : v->stages[v->last].runs.items;
     *out = (visible_set){.runs = runs, .run_count = run_count, .mover_runs = v->mover_runs.items};
     if (!v->chain->stages[v->last].built.takes_movers) {
         out->mover_run_count = draw_movers(f);
@@ -274,6 +310,21 @@ static void begin(frame *f)
     }
 }
 
+// A filter that walks the hierarchy takes no candidates; a select before it runs for its pictures alone. 0 on nonsense.
+static int run_early_stages(frame *f)
+{
+    const viewer *v = f->v;
+    const cull_built *select = &v->chain->stages[0].built;
+    if (v->first > 0 && (select->max_pictures || select->max_captures)) {
+        if (!run_early_stage(f, 0)) return 0;
+        f->visit.candidates = NULL;
+        f->visit.candidate_count = 0;
+    }
+    for (uint32_t i = v->first; i < v->last; ++i)
+        if (v->chain->stages[i].role != ROLE_CROSS && !run_early_stage(f, i)) return 0;
+    return 1;
+}
+
 void frame_run(viewer *v, const frame_input *q, visible_set *out_set, frame_stats *out_stats)
 {
     frame f = {.v = v, .q = q, .stats = out_stats};
@@ -281,11 +332,7 @@ void frame_run(viewer *v, const frame_input *q, visible_set *out_set, frame_stat
     *out_stats = (frame_stats){0};
     time_start(&f);
     begin(&f);
-    int sound = 1;
-    const uint32_t first = v->first > 0 && v->chain->stages[0].built.max_pictures ? 0 : v->first;
-    for (uint32_t i = first; i < v->last && sound; ++i)
-        if (v->chain->stages[i].role != ROLE_CROSS) sound = run_early_stage(&f, i);
-    const uint32_t run_count = sound ? run_last_stage(&f) : UINT32_MAX;
+    const uint32_t run_count = run_early_stages(&f) ? run_last_stage(&f) : UINT32_MAX;
     if (run_count == UINT32_MAX) draw_whole(&f, &set);
     else finish_set(&f, run_count, &set);
     time_stop(&f);

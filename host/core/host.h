@@ -8,8 +8,7 @@
 
 #include <portcullis/culler.h>
 
-// Lives as long as any culler made with it. `log` receives the plugins' lines; its counters are the only thing that
-// changes after host_make, so logging is serialised by the caller's report.
+// Lives as long as any culler made with it. `log` receives the plugins' lines, from whatever thread they come: see report.h.
 typedef struct host_services {
     cull_host host; // what plugins get; host.user points back here
     const allocator *memory;

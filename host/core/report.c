@@ -41,13 +41,13 @@ result report_error(report *r, const char *file, size_t line, const char *format
     va_start(values, format);
     say(r, REPORT_ERROR, file, line, format, values);
     va_end(values);
-    r->errors++;
+    (void)__atomic_fetch_add(&r->errors, 1, __ATOMIC_RELAXED); // a count, it orders nothing
     return RESULT_BAD_INPUT;
 }
 
 void report_warning(report *r, const char *file, size_t line, const char *format, ...)
 {
-    if (r->warnings++ >= WARNINGS_SHOWN) return;
+    if (__atomic_fetch_add(&r->warnings, 1, __ATOMIC_RELAXED) >= WARNINGS_SHOWN) return;
     va_list values;
     va_start(values, format);
     say(r, REPORT_WARNING, file, line, format, values);

@@ -17,6 +17,7 @@ typedef enum result {
 typedef enum report_level { REPORT_NOTE, REPORT_WARNING, REPORT_ERROR } report_level;
 
 // Where lines go. `line` NULL drops them; text has no newline. After 20 warnings of a file the rest are only counted.
+// [any thread] Cullers log from several at once: `line` must bear that where several viewers run; the counters do.
 typedef struct report {
     void (*line)(void *user, report_level level, const char *text);
     void *user;

@@ -17,6 +17,9 @@ typedef struct runs_kernel {
 } runs_kernel;
 
 const runs_kernel *runs_kernel_best(void); // [any thread] the widest that this CPU has
-extern const runs_kernel runs_kernel_plain, runs_kernel_avx2, runs_kernel_avx512;
+extern const runs_kernel runs_kernel_plain;
+#if defined(__x86_64__)
+extern const runs_kernel runs_kernel_avx2, runs_kernel_avx512; // only for a CPU that has them
+#endif
 
 #endif

@@ -4,6 +4,8 @@
 // position depends on who computes it.
 #include "scene_builder.h"
 
+#include <portcullis/box.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,16 +23,6 @@ static double round_even(double v)
 {
     const double shift = 6755399441055744.0; // 1.5 * 2^52
     return (v + shift) - shift;
-}
-
-static float lesser(float a, float b)
-{
-    return a < b ? a : b;
-}
-
-static float greater(float a, float b)
-{
-    return a > b ? a : b;
 }
 
 // One allocation of the scene's arena, or a remembered failure.
@@ -151,12 +143,8 @@ static float *take_floats(finish *f, size_t count)
 
 static cull_box box_of_item(const scene *s, const scene_item *item)
 {
-    cull_box box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (uint32_t i = item->first_index; i < item->first_index + item->index_count; ++i) {
-        const cull_vec3 p = s->positions[s->indices[i]];
-        box.min = (cull_vec3){lesser(box.min.x, p.x), lesser(box.min.y, p.y), lesser(box.min.z, p.z)};
-        box.max = (cull_vec3){greater(box.max.x, p.x), greater(box.max.y, p.y), greater(box.max.z, p.z)};
-    }
+    cull_box box = cull_box_none();
+    for (uint32_t i = item->first_index; i < item->first_index + item->index_count; ++i) box = cull_box_with_point(box, s->positions[s->indices[i]]);
     return box;
 }
 
@@ -167,17 +155,16 @@ static void find_boxes(finish *f)
     float *axes[6];
     for (int k = 0; k < 6; ++k) axes[k] = take_floats(f, count);
     if (f->failed) return;
-    cull_box all = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    cull_box all = cull_box_none();
     for (size_t i = 0; i < count; ++i) {
         const cull_box box = box_of_item(s, &s->items[i]);
         const float values[6] = {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
         for (int k = 0; k < 6; ++k) axes[k][i] = values[k];
-        all.min = (cull_vec3){lesser(all.min.x, box.min.x), lesser(all.min.y, box.min.y), lesser(all.min.z, box.min.z)};
-        all.max = (cull_vec3){greater(all.max.x, box.max.x), greater(all.max.y, box.max.y), greater(all.max.z, box.max.z)};
+        all = cull_box_union(all, box);
     }
     s->boxes = (cull_boxes){axes[0], axes[1], axes[2], axes[3], axes[4], axes[5]};
     s->zone.box = all;
-    s->zone.radius = greater(greater(greater(-all.min.x, all.max.x), greater(-all.min.y, all.max.y)), greater(-all.min.z, all.max.z));
+    s->zone.radius = cull_box_radius(all);
 }
 
 // Plane ids: planes whose rounded numbers agree are one. Rounding only decides sharing, never a position.

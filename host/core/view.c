@@ -191,8 +191,15 @@ void view_derive(const camera *c, const view_frame *f, const double zone_origin[
         guard.forward[i] = -s.back[i];
     }
     memset(view, 0, sizeof *view);
-    for (int i = 0; i < 3; i++) view->eye[i] = (float)guard.eye[i];
+    for (int i = 0; i < 3; i++) {
+        view->eye[i] = (float)guard.eye[i];
+        view->eye_exact[i] = guard.eye[i];
+        view->forward[i] = guard.forward[i];
+    }
     view->eye[3] = 1;
+    view->eye_exact[3] = 1;
+    view->pixel_tangent = guard.pixel_tangent;
+    view->reach = guard.reach;
     matrix_derive(c, &s, guard.eye, view->clip_from_zone);
     view->pixels_per_tangent = (float)(f->height_px / (2 * s.tall));
     view->near_distance = (float)c->near_m;

@@ -82,7 +82,7 @@ static int open_lists(viewer *v)
     const chain *c = v->chain;
     const cull_built *last = &c->stages[v->last].built, *select = &c->stages[0].built;
     const uint32_t movers = c->zone.mover_capacity;
-    v->answer_capacity = last->max_tests * 2;
+    v->answer_capacity = last->max_tests ? last->max_tests * 2 + 1 : 0; // one more than is lent: a full list says that there are more
     v->whole = (cull_run){0, c->zone.item_count};
     int good = list_take(&v->tests, v->memory, last->max_tests, sizeof(cull_test));
     good = good && list_take(&v->captures, v->memory, last->max_captures, sizeof(cull_capture));
@@ -91,6 +91,8 @@ static int open_lists(viewer *v)
     good = good && list_take(&v->select_pictures, v->memory, select->max_pictures, sizeof(cull_picture));
     good = good && list_take(&v->keep_captures, v->memory, select->max_captures, 1);
     good = good && list_take(&v->keep_pictures, v->memory, select->max_pictures, 1);
+    good = good && list_take(&v->drawn, v->memory, last->max_steps > 1 ? v->stages[v->last].run_capacity : 0, sizeof(cull_run));
+    good = good && list_take(&v->slot_marks, v->memory, v->slot_count, 1);
     good = good && list_take(&v->answers, v->memory, v->answer_capacity, sizeof(cull_answer));
     good = good && list_take(&v->movers, v->memory, movers, sizeof(cull_mover));
     good = good && list_take(&v->mover_runs, v->memory, movers, sizeof(cull_run));
@@ -146,7 +148,8 @@ void viewer_close(viewer *v)
         list_close(&v->stages[i].runs, v->memory);
     }
     list *const all[] = {&v->tests, &v->captures, &v->pictures, &v->select_captures, &v->select_pictures, &v->keep_captures,
-                         &v->keep_pictures, &v->early_tests, &v->early_captures, &v->early_pictures, &v->answers, &v->movers, &v->mover_runs, &v->seen};
+                         &v->keep_pictures, &v->early_tests, &v->early_captures, &v->early_pictures, &v->drawn, &v->slot_marks,
+                         &v->answers, &v->movers, &v->mover_runs, &v->seen};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) list_close(all[i], v->memory);
     memory_free(v->memory, v->slots, v->slot_count, 1);
     memory_free(v->memory, v->scratch, v->scratch_size, 1);

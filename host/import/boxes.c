@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "import.h"
 
+#include "line_scan.h"
 #include "number.h"
 
 #include <math.h>
@@ -12,75 +13,39 @@ enum { HUES = 16, FACES = 6 };
 static const double COORDINATE_MOST = 1e9; // metres, the scene's own limit: here the line is still known
 
 typedef struct box_reader {
-    const char *path, *at, *end;
-    size_t line;
-    report *report;
+    line_scan text;
     scene_builder *builder;
     uint32_t materials[HUES], object;
     uint64_t flat; // boxes without any area
 } box_reader;
 
-static int is_blank(char c)
-{
-    return c == ' ' || c == '\t' || c == '\r';
-}
-
-static void skip_blanks(box_reader *b)
-{
-    while (b->at < b->end && is_blank(*b->at)) b->at++;
-}
-
-static void skip_lines(box_reader *b)
-{
-    for (;; b->at++) {
-        skip_blanks(b);
-        if (b->at >= b->end || *b->at != '\n') return;
-        b->line++;
-    }
-}
-
-static result fault(box_reader *b, const char *what)
-{
-    return report_error(b->report, b->path, b->line, "%s", what);
-}
-
-static int at_line_end(box_reader *b)
-{
-    skip_blanks(b);
-    return b->at >= b->end || *b->at == '\n';
-}
-
 static result read_head(box_reader *b, uint32_t *out_count)
 {
     static const char word[] = "boxes";
-    skip_lines(b);
-    if ((size_t)(b->end - b->at) < sizeof word - 1 || memcmp(b->at, word, sizeof word - 1) != 0)
-        return fault(b, "the first line must be `boxes N`; is this a .boxes file?");
-    b->at += sizeof word - 1;
-    const char *behind_word = b->at;
-    skip_blanks(b);
+    line_scan_skip_empty(&b->text);
+    if ((size_t)(b->text.end - b->text.at) < sizeof word - 1 || memcmp(b->text.at, word, sizeof word - 1) != 0)
+        return line_scan_fault(&b->text, "the first line must be `boxes N`; is this a .boxes file?");
+    b->text.at += sizeof word - 1;
+    const char *behind_word = b->text.at;
+    line_scan_skip_blanks(&b->text);
     double count = 0;
-    const char *behind = b->at > behind_word ? number_read(b->at, b->end, &count) : NULL;
+    const char *behind = b->text.at > behind_word ? number_read(b->text.at, b->text.end, &count) : NULL;
     if (!behind || count != floor(count) || count < 1 || count > UINT32_MAX)
-        return fault(b, "`boxes` takes a whole number from 1 on; write how many lines follow");
-    b->at = behind;
+        return line_scan_fault(&b->text, "`boxes` takes a whole number from 1 on; write how many lines follow");
+    b->text.at = behind;
     *out_count = (uint32_t)count;
-    return at_line_end(b) ? RESULT_OK : fault(b, "more than `boxes N` on the first line; begin a new line");
+    return line_scan_at_end(&b->text) ? RESULT_OK : line_scan_fault(&b->text, "more than `boxes N` on the first line; begin a new line");
 }
 
 static result read_box(box_reader *b, double box[6])
 {
     for (int k = 0; k < 6; ++k) {
-        skip_blanks(b);
-        const char *behind = number_read(b->at, b->end, &box[k]);
-        if (!behind || (behind < b->end && !is_blank(*behind) && *behind != '\n'))
-            return fault(b, "not six decimal numbers; write minx miny minz maxx maxy maxz");
-        if (!(fabs(box[k]) <= COORDINATE_MOST)) return fault(b, "a coordinate beyond 1e9 m; move the boxes nearer to the origin");
-        b->at = behind;
+        if (!line_scan_number(&b->text, &box[k])) return line_scan_fault(&b->text, "not six decimal numbers; write minx miny minz maxx maxy maxz");
+        if (!(fabs(box[k]) <= COORDINATE_MOST)) return line_scan_fault(&b->text, "a coordinate beyond 1e9 m; move the boxes nearer to the origin");
     }
-    if (!at_line_end(b)) return fault(b, "more than six numbers; write one box a line");
+    if (!line_scan_at_end(&b->text)) return line_scan_fault(&b->text, "more than six numbers; write one box a line");
     for (int k = 0; k < 3; ++k)
-        if (box[k] > box[3 + k]) return fault(b, "a min above its max; write the three least coordinates first");
+        if (box[k] > box[3 + k]) return line_scan_fault(&b->text, "a min above its max; write the three least coordinates first");
     return RESULT_OK;
 }
 
@@ -142,25 +107,25 @@ static result read_boxes(box_reader *b)
     uint32_t count = 0;
     result done = read_head(b, &count);
     if (done != RESULT_OK) return done;
-    if (make_materials(b) != RESULT_OK) return report_no_memory(b->report, b->path);
+    if (make_materials(b) != RESULT_OK) return report_no_memory(b->text.report, b->text.path);
     for (uint32_t i = 0; i < count; ++i) {
         double box[6];
-        skip_lines(b);
-        if (b->at >= b->end)
-            return report_error(b->report, b->path, b->line, "the file ends after %u of %u boxes; correct the count or add the rest", i, count);
+        line_scan_skip_empty(&b->text);
+        if (b->text.at >= b->text.end)
+            return report_error(b->text.report, b->text.path, b->text.line, "the file ends after %u of %u boxes; correct the count or add the rest", i, count);
         done = read_box(b, box);
         if (done != RESULT_OK) return done;
         done = add_box(b, box, i);
-        if (done == RESULT_NO_MEMORY) return report_no_memory(b->report, b->path);
-        if (done != RESULT_OK) return fault(b, "over 2^32 of anything; split the file");
+        if (done == RESULT_NO_MEMORY) return report_no_memory(b->text.report, b->text.path);
+        if (done != RESULT_OK) return line_scan_fault(&b->text, "over 2^32 of anything; split the file");
     }
-    skip_lines(b);
-    return b->at >= b->end ? RESULT_OK : fault(b, "more lines than `boxes N` says; correct the count");
+    line_scan_skip_empty(&b->text);
+    return b->text.at >= b->text.end ? RESULT_OK : line_scan_fault(&b->text, "more lines than `boxes N` says; correct the count");
 }
 
 result import_boxes(const char *path, const char *text, size_t size, const allocator *memory, report *r, scene **out)
 {
-    box_reader b = {.path = path, .at = text, .end = text + size, .line = 1, .report = r};
+    box_reader b = {.text = {.path = path, .at = text, .end = text + size, .line = 1, .report = r, .comment = '\n'}};
     if (scene_builder_open(memory, &b.builder) != RESULT_OK) return report_no_memory(r, path);
     result done = read_boxes(&b);
     if (done == RESULT_OK && b.flat) report_note(r, "%s: %llu boxes have no area and are left out", path, (unsigned long long)b.flat);

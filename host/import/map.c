@@ -163,15 +163,26 @@ static void name_entity(const map_entity *e, char name[NAME_BYTES])
     else snprintf(name, NAME_BYTES, "%.*s %u", length, class_name.text, e->number);
 }
 
+// Shut, then open where that is elsewhere, whatever the option says: free space, and so the automatic views, are the same.
+static result add_bodies(map_import *i, const double offset[3])
+{
+    static const double nowhere[3] = {0};
+    const double *const places[2] = {nowhere, offset};
+    const int count = memcmp(offset, nowhere, sizeof nowhere) != 0 ? 2 : 1;
+    result done = RESULT_OK;
+    for (int p = 0; p < count; ++p)
+        for (size_t n = 0; n < i->stage.solids.count && done == RESULT_OK; ++n)
+            done = add_solid(i, (const staged_solid *)i->stage.solids.items + n, places[p]);
+    return done;
+}
+
 static result add_staged(map_import *i, entity_role role)
 {
     const map_stage *s = &i->stage;
     double offset[3] = {0};
-    const double nowhere[3] = {0};
     result done = RESULT_OK;
     if (role == ENTITY_MOVER) done = entity_open_offset(&i->entity, s->min, s->max, &i->reader, offset);
-    for (size_t n = 0; n < s->solids.count && done == RESULT_OK; ++n)
-        done = add_solid(i, (const staged_solid *)s->solids.items + n, i->doors == DOORS_OPEN ? offset : nowhere);
+    if (done == RESULT_OK) done = add_bodies(i, offset);
     if (s->polygons.count == 0 || done != RESULT_OK) return done;
     char name[NAME_BYTES];
     uint32_t object;
@@ -229,9 +240,14 @@ static result import_with(map_import *i, scene **out)
     return scene_builder_finish(i->builder, path, r, out);
 }
 
+static size_t byte_order_mark(const char *text, size_t size) // UTF-8's
+{
+    return size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
+}
+
 result import_map(const char *path, const char *text, size_t size, const import_options *options, const allocator *memory, report *r, scene **out)
 {
-    map_import i = {.reader = {.path = path, .at = text, .end = text + size, .line = 1, .report = r},
+    map_import i = {.reader = {.path = path, .at = text + byte_order_mark(text, size), .end = text + size, .line = 1, .report = r},
                     .entity = map_entity_make(memory),
                     .stage = map_stage_make(memory),
                     .vertices = buffer_make(memory, sizeof(builder_vertex)),

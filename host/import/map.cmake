@@ -1,3 +1,3 @@
-target_sources(host_import PRIVATE import.c number.c boxes.c
+target_sources(host_import PRIVATE import.c number.c line_scan.c boxes.c
   map.c map_text.c map_texture.c map_entity.c map_stage.c map_brush.c map_fan.c
   views.c views_auto.c views_walk.c views_space.c views_distance.c)

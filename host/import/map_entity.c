@@ -35,11 +35,16 @@ place_kind entity_place_of(map_word class_name)
     return map_word_starts(class_name, "monster_") ? PLACE_MONSTER : PLACE_OTHER;
 }
 
-// 0 where the key is absent, and out stays as it was.
+// Where the key is absent out stays as it was; where its value is empty it is 0, as the game reads it.
 static result read_key(const map_entity *e, const char *name, const map_reader *m, double *out, int count)
 {
     const map_key *key = map_entity_key(e, name);
     if (!key || map_word_numbers(key->value, out, count)) return RESULT_OK;
+    if (map_word_numbers(key->value, NULL, 0)) {
+        for (int i = 0; i < count; ++i) out[i] = 0;
+        report_warning(m->report, m->path, key->line, "entity %u: \"%s\" is empty; taken as 0", e->number, name);
+        return RESULT_OK;
+    }
     return report_error(m->report, m->path, key->line, "entity %u: \"%s\" takes %d number%s; repair its value", e->number, name, count,
                         count > 1 ? "s" : "");
 }

@@ -13,6 +13,7 @@ enum {
     FACES_MOST = 4096,     // of one brush: clipping costs their square
     TRAILING_MOST = 16,    // Quake 2, Hexen 2 and Daikatana write 1 to 8 numbers behind a face
     SHOWN_BYTES = 40,      // of a wrong word in a message
+    BYTE_TEXT = 4,         // \xNN
 };
 static const double TEXTURE_NUMBER_MOST = 1e9; // texels or their scale: keeps texture coordinates finite in float
 
@@ -98,15 +99,28 @@ static map_word peek_word(const map_reader *m)
     return (map_word){m->at, (size_t)(end - m->at)};
 }
 
+// What a terminal might act on, or not be able to show, as \xNN.
+static void show_word(map_word word, char to[SHOWN_BYTES * BYTE_TEXT + 1])
+{
+    const size_t shown = word.length < SHOWN_BYTES ? word.length : SHOWN_BYTES;
+    size_t used = 0;
+    for (size_t i = 0; i < shown; ++i) {
+        const unsigned char byte = (unsigned char)word.text[i];
+        if (byte >= 32 && byte < 127) to[used++] = (char)byte;
+        else used += (size_t)snprintf(to + used, BYTE_TEXT + 1, "\\x%02x", byte);
+    }
+    to[used] = 0;
+}
+
 static result fault(const place *p, const char *expected, const char *advice)
 {
     const map_reader *m = p->m;
     const map_word word = peek_word(m);
-    const int shown = word.length < SHOWN_BYTES ? (int)word.length : SHOWN_BYTES;
-    char brush[32] = "", found[SHOWN_BYTES + 32];
+    char brush[32] = "", shown[SHOWN_BYTES * BYTE_TEXT + 1], found[sizeof shown + 32];
+    show_word(word, shown);
     if (m->at >= m->end) snprintf(found, sizeof found, "the end of the file");
-    else if (shown == 0) snprintf(found, sizeof found, "the end of the line");
-    else snprintf(found, sizeof found, "'%.*s'", shown, word.text);
+    else if (word.length == 0) snprintf(found, sizeof found, "the end of the line");
+    else snprintf(found, sizeof found, "'%s'", shown);
     if (p->in_brush) snprintf(brush, sizeof brush, " brush %zu", p->entity->brushes.count - 1);
     return report_error(m->report, m->path, m->line, "entity %u%s: expected %s, found %s; %s", p->entity->number, brush, expected, found, advice);
 }

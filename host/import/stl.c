@@ -16,9 +16,14 @@ static uint32_t little32(const char *bytes)
     return (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
 }
 
-static int is_binary(const char *bytes, size_t size)
+// The size that a binary file of this count has, 0 where the bytes don't reach that far: then it is text. Text never reaches
+// it, four printable bytes being a count of over 7 GB.
+static size_t binary_size(const char *bytes, size_t size)
 {
-    return size >= STL_HEAD_BYTES && size == STL_HEAD_BYTES + (size_t)STL_TRIANGLE_BYTES * little32(bytes + STL_TITLE_BYTES);
+    if (size < STL_HEAD_BYTES) return 0;
+    const uint32_t count = little32(bytes + STL_TITLE_BYTES);
+    const uint64_t needed = STL_HEAD_BYTES + (uint64_t)STL_TRIANGLE_BYTES * count;
+    return needed == size || (count > 0 && needed < size) ? (size_t)needed : 0;
 }
 
 static result check_binary(const char *path, const char *bytes, size_t size, report *r)
@@ -35,9 +40,12 @@ static result check_binary(const char *path, const char *bytes, size_t size, rep
     return RESULT_OK;
 }
 
-static int word_is(const char *word, size_t length, const char *text)
+static int word_is(const char *word, size_t length, const char *lower_case) // letter case is ignored
 {
-    return length == strlen(text) && memcmp(word, text, length) == 0;
+    if (length != strlen(lower_case)) return 0;
+    for (size_t i = 0; i < length; ++i)
+        if ((word[i] >= 'A' && word[i] <= 'Z' ? word[i] - 'A' + 'a' : word[i]) != lower_case[i]) return 0;
+    return 1;
 }
 
 static void put_little32(char *bytes, uint32_t value)
@@ -106,9 +114,12 @@ static result read_soup(mesh_soup *soup, const char *path, const char *bytes, si
     uint32_t count = 0;
     buffer binary = buffer_make(memory, 1);
     arena scratch = arena_make(memory);
-    const int was_binary = is_binary(bytes, size);
-    result done = was_binary ? check_binary(path, bytes, size, r) : read_ascii(text_make(path, bytes, size, r), &binary);
-    if (done == RESULT_OK && was_binary) done = mesh_read_stl(path, bytes, size, &scratch, r, &triangles, &count);
+    const size_t binary_bytes = binary_size(bytes, size);
+    const int was_binary = binary_bytes > 0;
+    if (was_binary && binary_bytes < size)
+        report_warning(r, path, 0, "%zu bytes behind the last triangle that it counts are left out", size - binary_bytes);
+    result done = was_binary ? check_binary(path, bytes, binary_bytes, r) : read_ascii(text_make(path, bytes, size, r), &binary);
+    if (done == RESULT_OK && was_binary) done = mesh_read_stl(path, bytes, binary_bytes, &scratch, r, &triangles, &count);
     if (done == RESULT_OK && !was_binary) done = mesh_read_stl(path, binary.items, binary.count, &scratch, r, &triangles, &count);
     if (done == RESULT_OK && count == 0) done = report_error(r, path, 0, "no facets with area; is it an .stl file?");
     if (done == RESULT_OK && fill_soup(soup, path, triangles, count) != RESULT_OK) done = report_no_memory(r, path);

@@ -3,7 +3,7 @@
 #include "views.h"
 
 #include "../core/file.h"
-#include "number.h"
+#include "line_scan.h"
 #include "views_auto.h"
 
 #include <math.h>
@@ -14,57 +14,17 @@ enum { NUMBERS = 13, NUMBER_BYTES = 32, VIEWS_MOST = 100000 };
 
 // ---- Reading ----
 
-typedef struct view_reader {
-    const char *path, *at, *end;
-    size_t line;
-    report *report;
-} view_reader;
-
-static int is_blank(char c)
-{
-    return c == ' ' || c == '\t' || c == '\r';
-}
-
-static void skip_blanks(view_reader *v)
-{
-    while (v->at < v->end && is_blank(*v->at)) v->at++;
-}
-
-static int at_line_end(view_reader *v)
-{
-    skip_blanks(v);
-    return v->at >= v->end || *v->at == '\n' || *v->at == '#';
-}
-
-static void next_line(view_reader *v)
-{
-    while (v->at < v->end && *v->at != '\n') v->at++;
-    if (v->at < v->end) v->at++;
-    v->line++;
-}
-
-// The far plane may be at infinity, and is then written so.
-static const char *read_infinity(const view_reader *v, double *out)
-{
-    static const char word[] = "inf";
-    if ((size_t)(v->end - v->at) < sizeof word - 1 || memcmp(v->at, word, sizeof word - 1) != 0) return NULL;
-    *out = INFINITY;
-    return v->at + sizeof word - 1;
-}
-
-static result read_view(view_reader *v, camera *out)
+static result read_view(line_scan *v, camera *out)
 {
     double n[NUMBERS];
     for (int i = 0; i < NUMBERS; ++i) {
-        skip_blanks(v);
-        const char *behind = number_read(v->at, v->end, &n[i]);
-        if (!behind && i == NUMBERS - 1) behind = read_infinity(v, &n[i]);
-        if (!behind || (behind < v->end && !is_blank(*behind) && *behind != '\n' && *behind != '#'))
+        if (line_scan_number(v, &n[i])) continue;
+        if (i < NUMBERS - 1 || !line_scan_word(v, "inf"))
             return report_error(v->report, v->path, v->line,
                                 "number %d of 13 is missing or no decimal number; write eye(3) dir(3) up(3) fovy_deg aspect near far", i + 1);
-        v->at = behind;
+        n[i] = INFINITY; // the far plane may be there, and is then written so
     }
-    if (!at_line_end(v)) return report_error(v->report, v->path, v->line, "more than 13 numbers; write one view a line");
+    if (!line_scan_at_end(v)) return line_scan_fault(v, "more than 13 numbers; write one view a line");
     *out = (camera){.fovy_deg = n[9], .aspect = n[10], .near_m = n[11], .far_m = n[12]};
     memcpy(out->eye, n, sizeof out->eye);
     memcpy(out->forward, n + 3, sizeof out->forward);
@@ -73,15 +33,15 @@ static result read_view(view_reader *v, camera *out)
     return wrong ? report_error(v->report, v->path, v->line, "%s; correct the view", wrong) : RESULT_OK;
 }
 
-static result read_views(view_reader *v, buffer *cameras)
+static result read_views(line_scan *v, buffer *cameras)
 {
-    for (; v->at < v->end; next_line(v)) {
-        if (at_line_end(v)) continue;
+    for (; v->at < v->end; line_scan_next(v)) {
+        if (line_scan_at_end(v)) continue;
         camera *c = buffer_push(cameras, 1);
         if (!c) return report_no_memory(v->report, v->path);
         const result done = read_view(v, c);
         if (done != RESULT_OK) return done;
-        if (cameras->count > VIEWS_MOST) return report_error(v->report, v->path, v->line, "over 100,000 views; split the path");
+        if (cameras->count > VIEWS_MOST) return line_scan_fault(v, "over 100,000 views; split the path");
     }
     return cameras->count ? RESULT_OK : report_error(v->report, v->path, 0, "no view in it; write 13 numbers a line");
 }
@@ -108,7 +68,7 @@ static result keep(const buffer *cameras, const char *path, report *r, camera_pa
 
 result camera_path_parse(const char *path, const char *text, size_t size, const allocator *memory, report *r, camera_path *out)
 {
-    view_reader v = {path, text, text + size, 1, r};
+    line_scan v = {.path = path, .at = text, .end = text + size, .line = 1, .report = r, .comment = '#'};
     buffer cameras = buffer_make(memory, sizeof(camera));
     result done = read_views(&v, &cameras);
     if (done == RESULT_OK) done = keep(&cameras, path, r, out);

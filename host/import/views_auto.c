@@ -1,5 +1,5 @@
 // Automatic views auto:N: from a map's point entities that stand in air, else spread over the scene: among boxes, on
-// and over ground, within and around a model.
+// and over ground, within and around a model, back from what leaves no room.
 // SPDX-License-Identifier: MIT
 #include "views_auto.h"
 
@@ -9,8 +9,13 @@ enum { SPREAD_TRIES = 400 };
 static const double PI = 3.14159265358979323846;
 static const double PITCH_MOST_DEG = 25, FOVY_DEG = 60;
 static const double FAR_LEAST_M = 16;
+static const double NEAR_LEAST_M = 1e-20;     // a camera's near is a float
 static const double FIGURE_EYE_M = 0.7;       // a player's or monster's eye above its origin
 static const double MESH_CLEARANCE_PART = 0.02; // of the diagonal: a model of 20 cm has no place 12 cm from itself
+static const double SMALL_SCENE_M = 1;         // below, no place in it is any eye's
+static const double PLANE_SCENE = 1e-3;        // least extent by largest, below which all lies in one plane: no room within
+static const double BACK_LEAST = 1, BACK_MOST = 3; // of the largest extent, from a point of the scene to an eye set back
+static const double BACK_LEAST_NEAR = 4;       // of near
 static const double FLAT_SCENE = 0.25;        // height by width, below which a scene is ground to stand on, not a model
 static const uint64_t SEED = 0x706f727463756c6c; // "portcull"
 
@@ -38,9 +43,9 @@ static void direction_of(double yaw, double pitch, double out[3])
 
 camera auto_camera(const auto_views *a, const double at[3], double yaw, double pitch)
 {
-    camera c = {.up = {0, 1, 0}, .fovy_deg = FOVY_DEG, .aspect = a->aspect, .near_m = AUTO_NEAR_M, .far_m = far_for(a, at)};
+    camera c = {.up = {0, 1, 0}, .fovy_deg = FOVY_DEG, .aspect = a->aspect, .near_m = a->near_m, .far_m = far_for(a, at)};
     direction_of(yaw, pitch, c.forward);
-    for (int k = 0; k < 3; ++k) c.eye[k] = a->scene->zone.origin[k] + at[k];
+    for (int k = 0; k < 3; ++k) c.eye[k] = a->origin[k] + at[k];
     return c;
 }
 
@@ -62,7 +67,7 @@ static result find_places(auto_views *a)
     const scene *s = a->scene;
     for (uint32_t i = 0; s->is_map && i < s->place_count; ++i) {
         eye e;
-        for (int k = 0; k < 3; ++k) e.at[k] = s->places[i].position[k] - s->zone.origin[k];
+        for (int k = 0; k < 3; ++k) e.at[k] = s->places[i].position[k] - a->origin[k];
         if (s->places[i].kind != PLACE_OTHER) e.at[1] += FIGURE_EYE_M;
         int inside = 1; // a place outside of all geometry sees nothing of the level
         for (int k = 0; k < 3; ++k) inside &= e.at[k] >= a->low[k] && e.at[k] <= a->high[k];
@@ -79,19 +84,71 @@ static result find_places(auto_views *a)
     return RESULT_OK;
 }
 
+static double extent_of(const auto_views *a) // the largest
+{
+    return fmax(a->high[0] - a->low[0], fmax(a->high[1] - a->low[1], a->high[2] - a->low[2]));
+}
+
+static void include(auto_views *a, const double min[3], const double max[3])
+{
+    for (int k = 0; k < 3; ++k) {
+        a->low[k] = fmin(a->low[k], min[k]);
+        a->high[k] = fmax(a->high[k], max[k]);
+    }
+}
+
+static void include_item(auto_views *a, uint32_t i)
+{
+    const cull_boxes *b = &a->scene->boxes;
+    const double *o = a->scene->zone.origin;
+    const double min[3] = {o[0] + b->min_x[i], o[1] + b->min_y[i], o[2] + b->min_z[i]};
+    const double max[3] = {o[0] + b->max_x[i], o[1] + b->max_y[i], o[2] + b->max_z[i]};
+    include(a, min, max);
+}
+
+// The zone's box and origin follow the movers to where they are now; their solids stand wherever they may be.
+static void find_bounds(auto_views *a)
+{
+    const scene *s = a->scene;
+    for (int k = 0; k < 3; ++k) {
+        a->low[k] = INFINITY;
+        a->high[k] = -INFINITY;
+    }
+    for (uint32_t i = 0; i < s->item_count; ++i) include_item(a, i);
+    for (uint32_t i = 0; s->mover_count && i < s->solid_count; ++i)
+        if (s->solids[i].kind != SOLID_STRUCTURE) include(a, s->solids[i].min, s->solids[i].max);
+    if (!(a->low[0] <= a->high[0])) // movers without a body alone
+        for (uint32_t i = 0; i < s->mover_count; ++i) include_item(a, s->item_count + i);
+    for (int k = 0; k < 3; ++k) {
+        a->origin[k] = s->mover_count ? floor((a->low[k] + a->high[k]) / 2 + 0.5) : s->zone.origin[k];
+        a->low[k] -= a->origin[k];
+        a->high[k] -= a->origin[k];
+    }
+}
+
+static int is_tiny_or_flat(const auto_views *a)
+{
+    const double extent = extent_of(a);
+    if (extent < SMALL_SCENE_M) return 1;
+    for (int k = 0; k < 3; ++k)
+        if (a->high[k] - a->low[k] <= PLANE_SCENE * extent) return 1;
+    return 0;
+}
+
 result auto_views_open(const scene *s, double aspect, const allocator *memory, report *r, auto_views *out)
 {
-    const cull_box box = s->zone.box;
     *out = (auto_views){.scene = s,
                         .memory = memory,
                         .report = r,
-                        .low = {box.min.x, box.min.y, box.min.z},
-                        .high = {box.max.x, box.max.y, box.max.z},
                         .aspect = aspect,
                         .random = {SEED},
                         .places = buffer_make(memory, sizeof(eye))};
+    find_bounds(out);
+    const double extent = extent_of(out);
+    out->near_m = extent > 0 && extent < SMALL_SCENE_M ? fmax(extent * AUTO_NEAR_PART, NEAR_LEAST_M) : AUTO_NEAR_M;
+    out->looks_from_afar = is_tiny_or_flat(out);
     for (uint32_t i = 0; i < s->item_count && !out->has_boxes; ++i) out->has_boxes = (s->items[i].flags & CULL_ITEM_BOX) != 0;
-    if (free_space_open(s, memory, &out->space) != RESULT_OK) return report_no_memory(r, s->path);
+    if (free_space_open(s, out->origin, memory, &out->space) != RESULT_OK) return report_no_memory(r, s->path);
     const result done = find_places(out);
     if (done != RESULT_OK) auto_views_close(out);
     return done;
@@ -117,10 +174,15 @@ int auto_is_ground(const auto_views *a)
     return height > AUTO_EYE_HEIGHT_M && height < FLAT_SCENE * fmax(a->high[0] - a->low[0], a->high[2] - a->low[2]);
 }
 
-static int is_free(const auto_views *a, const double at[3])
+static int has_room(const auto_views *a, const double at[3])
 {
     const double least = fmin(AUTO_CLEARANCE_M, MESH_CLEARANCE_PART * diagonal_of(a));
-    if (free_space_clearance(a->space, at, least, SPACE_ALL) < least) return 0;
+    return free_space_clearance(a->space, at, least, SPACE_ALL) >= least;
+}
+
+static int is_free(const auto_views *a, const double at[3])
+{
+    if (!has_room(a, at)) return 0;
     return a->has_boxes || a->scene->is_map || !free_space_is_enclosed(a->space, at);
 }
 
@@ -134,13 +196,19 @@ static int stand(const auto_views *a, double at[3], uint32_t i)
     return isfinite(height);
 }
 
+static int find_room(auto_views *a, uint32_t i, eye *e)
+{
+    for (int tries = 0; tries < SPREAD_TRIES; ++tries) {
+        for (int k = 0; k < 3; ++k) e->at[k] = random_between(&a->random, a->low[k], a->high[k]);
+        if (stand(a, e->at, i) && is_free(a, e->at)) return 1;
+    }
+    return 0;
+}
+
 eye auto_spread_eye(auto_views *a, uint32_t i)
 {
     eye e = {{0}};
-    for (int tries = 0; tries < SPREAD_TRIES; ++tries) {
-        for (int k = 0; k < 3; ++k) e.at[k] = random_between(&a->random, a->low[k], a->high[k]);
-        if (stand(a, e.at, i) && is_free(a, e.at)) return e;
-    }
+    if (find_room(a, i, &e)) return e;
     for (int k = 0; k < 3; ++k) e.at[k] = (a->low[k] + a->high[k]) / 2; // no room within: over it there is
     e.at[1] = a->high[1] + fmax(AUTO_EYE_HEIGHT_M, diagonal_of(a) / 4);
     return e;
@@ -182,16 +250,86 @@ static int mesh_camera(auto_views *a, double yaw, side where, camera *out)
     return 0;
 }
 
-result auto_views_make(auto_views *a, uint32_t count, camera *cameras)
+// ---- Set back ----
+
+static void random_of_triangle(auto_views *a, const scene_item *item, double out[3])
+{
+    const scene *s = a->scene;
+    const uint32_t *corners = s->indices + item->first_index + 3 * random_below(&a->random, item->index_count / 3);
+    const cull_vec3 p = s->positions[corners[0]], q = s->positions[corners[1]], r = s->positions[corners[2]];
+    double u = random_unit(&a->random), v = random_unit(&a->random);
+    if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+    }
+    out[0] = p.x + u * ((double)q.x - p.x) + v * ((double)r.x - p.x);
+    out[1] = p.y + u * ((double)q.y - p.y) + v * ((double)r.y - p.y);
+    out[2] = p.z + u * ((double)q.z - p.z) + v * ((double)r.z - p.z);
+}
+
+// On a triangle or within a box; of movers alone the middle of all their places.
+static void random_point(auto_views *a, double out[3])
+{
+    const scene *s = a->scene;
+    for (int k = 0; k < 3; ++k) out[k] = (a->low[k] + a->high[k]) / 2;
+    if (s->item_count == 0) return;
+    const uint32_t i = random_below(&a->random, s->item_count);
+    const scene_item *item = &s->items[i];
+    if (!(item->flags & CULL_ITEM_BOX) && item->index_count < 3) return;
+    if (item->flags & CULL_ITEM_BOX) {
+        out[0] = random_between(&a->random, s->boxes.min_x[i], s->boxes.max_x[i]);
+        out[1] = random_between(&a->random, s->boxes.min_y[i], s->boxes.max_y[i]);
+        out[2] = random_between(&a->random, s->boxes.min_z[i], s->boxes.max_z[i]);
+    } else random_of_triangle(a, item, out);
+    for (int k = 0; k < 3; ++k) out[k] += s->zone.origin[k] - a->origin[k];
+}
+
+static int is_outside(const auto_views *a, const double at[3])
+{
+    for (int k = 0; k < 3; ++k)
+        if (at[k] < a->low[k] || at[k] > a->high[k]) return 1;
+    return 0;
+}
+
+// From a point of the scene back along the view's direction, so that whatever the yaw the view looks at the scene.
+static camera camera_from_afar(auto_views *a, double yaw)
+{
+    double at[3], ahead[3], pitch = 0;
+    for (int tries = 0; tries <= SPREAD_TRIES; ++tries) {
+        const double most = BACK_MOST * extent_of(a); // out of the bounds from any point in them: their diagonal is 1.74 at most
+        const double way = tries < SPREAD_TRIES ? random_between(&a->random, BACK_LEAST * extent_of(a), most) : most;
+        pitch = random_pitch(&a->random);
+        direction_of(yaw, pitch, ahead);
+        random_point(a, at);
+        for (int k = 0; k < 3; ++k) at[k] -= fmax(way, BACK_LEAST_NEAR * a->near_m) * ahead[k];
+        if (is_outside(a, at) && has_room(a, at)) break;
+    }
+    return auto_camera(a, at, yaw, pitch);
+}
+
+static int find_eye(auto_views *a, uint32_t i, eye *out)
 {
     const eye *places = a->places.items;
-    const int is_mesh = !a->scene->is_map && !a->has_boxes, is_ground = auto_is_ground(a);
+    if (a->places.count) *out = places[i % a->places.count];
+    else if (a->looks_from_afar) return 0;
+    else if (!find_room(a, i, out)) {
+        report_note(a->report, "%s: no place in it has room for an eye; the views look at it from outside", a->scene->path);
+        a->looks_from_afar = 1;
+        return 0;
+    }
+    return 1;
+}
+
+result auto_views_make(auto_views *a, uint32_t count, camera *cameras)
+{
+    const int is_mesh = !a->scene->is_map && !a->has_boxes && !a->looks_from_afar, is_ground = auto_is_ground(a);
     for (uint32_t i = 0; i < count; ++i) {
         const double yaw = random_between(&a->random, -PI, PI);
         if (is_mesh && i % 2 == 1 && mesh_camera(a, yaw, OUT_OF_BOUNDS, &cameras[i])) continue;
         if (is_mesh && i % 2 == 0 && !is_ground && mesh_camera(a, yaw, WITHIN_BOUNDS, &cameras[i])) continue;
-        const eye e = a->places.count ? places[i % a->places.count] : auto_spread_eye(a, is_mesh ? i / 2 : i);
-        cameras[i] = auto_camera(a, e.at, yaw, random_pitch(&a->random));
+        eye e;
+        if (find_eye(a, is_mesh ? i / 2 : i, &e)) cameras[i] = auto_camera(a, e.at, yaw, random_pitch(&a->random));
+        else cameras[i] = camera_from_afar(a, yaw);
     }
     return RESULT_OK;
 }

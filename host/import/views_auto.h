@@ -1,6 +1,7 @@
 // Automatic views: where an eye may stand, and the cameras made of such places. Between views_auto.c and views_walk.c.
 // SPDX-License-Identifier: MIT
-// Invariant: nothing but constants and the scene's own data enters, so the same scene gives the same views.
+// Invariant: nothing but constants and the scene's own data enters, so the same scene gives the same views; and of the
+// movers only their solids, which stand both shut and open, so doors change no view.
 #ifndef PORTCULLIS_HOST_VIEWS_AUTO_H
 #define PORTCULLIS_HOST_VIEWS_AUTO_H
 
@@ -9,22 +10,26 @@
 #include "views_space.h"
 
 #define AUTO_CLEARANCE_M 0.125 // 4 units: the near plane's corner at 16:9 is 0.1 m from the eye
-#define AUTO_NEAR_M 0.0625
+#define AUTO_NEAR_M 0.0625       // of a scene of 1 m or more; below, AUTO_NEAR_PART of its largest extent, or it would be swallowed
+#define AUTO_NEAR_PART 0.0625
 #define AUTO_EYE_HEIGHT_M 1.7
 #define AUTO_STEP_M 0.3 // of a walk, a frame
 
-typedef struct eye { double at[3]; } eye; // relative to the zone's origin
+typedef struct eye { double at[3]; } eye; // relative to auto_views.origin
 
 typedef struct auto_views {
     const scene *scene;
     const allocator *memory;
     report *report;
     free_space *space;
-    double low[3], high[3]; // of everything
+    double origin[3];       // world: the zone's, but for a scene of movers one that they don't shift
+    double low[3], high[3]; // of everything, movers in all their places
     double aspect;
+    double near_m;
     random_stream random;
     buffer places; // eye: of point entities in air, shuffled
     int has_boxes;
+    int looks_from_afar; // tiny, flat, or without a place to stand: the eyes are set back from it
 } auto_views;
 
 result auto_views_open(const scene *s, double aspect, const allocator *memory, report *r, auto_views *out);

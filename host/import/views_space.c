@@ -22,6 +22,7 @@ typedef struct space_part {
 
 struct free_space {
     const allocator *memory;
+    double origin[3], zone_from_origin[3];
     buffer parts, triangles, planes; // space_part, double[3][3], scene_solid_plane
     buffer wide;                     // uint32_t: parts over too many cells to list in each
     buffer cell_first, cell_parts;   // uint32_t
@@ -60,7 +61,7 @@ static int add_solid_surface(free_space *space, const brush_body *body)
 
 static int add_solid(free_space *space, const scene *s, const scene_solid *solid, brush_body *body, buffer *cutting)
 {
-    const double *origin = s->zone.origin;
+    const double *origin = space->origin;
     const uint32_t first_plane = (uint32_t)space->planes.count, first = (uint32_t)space->triangles.count;
     scene_solid_plane *planes = buffer_append(&space->planes, s->solid_planes + solid->first_plane, solid->plane_count);
     cutting->count = 0;
@@ -71,7 +72,8 @@ static int add_solid(free_space *space, const scene *s, const scene_solid *solid
         planes[i].distance -= n[0] * origin[0] + n[1] * origin[1] + n[2] * origin[2];
         cuts[i] = brush_plane_from_unit(n, planes[i].distance);
     }
-    const double reach = 4 * (double)s->zone.radius + 1;
+    double reach = 1;
+    for (int k = 0; k < 3; ++k) reach = fmax(reach, 4 * fmax(fabs(solid->min[k] - origin[k]), fabs(solid->max[k] - origin[k])) + 1);
     const brush_fault fault = brush_body_cut(body, cuts, solid->plane_count, reach, SOLID_TOLERANCE);
     if (fault == BRUSH_NO_MEMORY || (fault == BRUSH_SOUND && !add_solid_surface(space, body))) return 0;
     space_part part = {.kind = PART_SOLID,
@@ -106,9 +108,9 @@ static int add_triangles(free_space *space, const scene *s, const scene_item *it
         if (!t) return 0;
         for (uint32_t c = 0; c < 3; ++c) {
             const cull_vec3 p = s->positions[s->indices[i + c]];
-            t[c][0] = p.x;
-            t[c][1] = p.y;
-            t[c][2] = p.z;
+            t[c][0] = p.x + space->zone_from_origin[0];
+            t[c][1] = p.y + space->zone_from_origin[1];
+            t[c][2] = p.z + space->zone_from_origin[2];
         }
         if (!add_part(space, &part)) return 0;
     }
@@ -122,8 +124,9 @@ static int add_items(free_space *space, const scene *s)
         if (item->flags & CULL_ITEM_SEE_THROUGH) continue;
         int good = 1;
         if (item->flags & CULL_ITEM_BOX) {
-            const space_part box = {.min = {s->boxes.min_x[i], s->boxes.min_y[i], s->boxes.min_z[i]},
-                                    .max = {s->boxes.max_x[i], s->boxes.max_y[i], s->boxes.max_z[i]},
+            const double *move = space->zone_from_origin;
+            const space_part box = {.min = {s->boxes.min_x[i] + move[0], s->boxes.min_y[i] + move[1], s->boxes.min_z[i] + move[2]},
+                                    .max = {s->boxes.max_x[i] + move[0], s->boxes.max_y[i] + move[1], s->boxes.max_z[i] + move[2]},
                                     .kind = PART_BOX,
                                     .what = SPACE_BOXES};
             good = add_part(space, &box);
@@ -226,11 +229,15 @@ static int build_grid(free_space *space)
     return 1;
 }
 
-result free_space_open(const scene *s, const allocator *memory, free_space **out)
+result free_space_open(const scene *s, const double origin[3], const allocator *memory, free_space **out)
 {
     free_space *space = memory_alloc_zeroed(memory, 1, sizeof *space);
     if (!space) return RESULT_NO_MEMORY;
     space->memory = memory;
+    for (int k = 0; k < 3; ++k) {
+        space->origin[k] = origin[k];
+        space->zone_from_origin[k] = s->zone.origin[k] - origin[k];
+    }
     space->parts = buffer_make(memory, sizeof(space_part));
     space->triangles = buffer_make(memory, 9 * sizeof(double));
     space->planes = buffer_make(memory, sizeof(scene_solid_plane));

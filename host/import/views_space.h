@@ -1,6 +1,7 @@
 // Free space: how far a point is from solids, boxes and triangles of a scene, by a uniform grid over them.
 // SPDX-License-Identifier: MIT
-// Invariant: all points are relative to the zone's origin, in metres; constant after opening.
+// Invariant: all points are relative to the origin given at opening, in metres; constant after it. What moves counts only
+// as its solids do.
 #ifndef PORTCULLIS_HOST_VIEWS_SPACE_H
 #define PORTCULLIS_HOST_VIEWS_SPACE_H
 
@@ -16,7 +17,8 @@ enum { // what counts
 
 typedef struct free_space free_space;
 
-result free_space_open(const scene *s, const allocator *memory, free_space **out); // RESULT_NO_MEMORY, unreported
+// origin: world, whole metres from the zone's, so that nothing is rounded.
+result free_space_open(const scene *s, const double origin[3], const allocator *memory, free_space **out); // RESULT_NO_MEMORY, unreported
 void free_space_close(free_space *space); // NULL is fine
 // Distance in metres from p to the nearest of what counts, exact, and at most `most`; 0 inside of a body. [any thread]
 double free_space_clearance(const free_space *space, const double p[3], double most, uint32_t what);

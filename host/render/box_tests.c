@@ -5,6 +5,7 @@
 
 static const uint32_t SLOT_HIDDEN = 0xffffffffu, SLOT_SEEN = 0xfffffffeu; // known without drawing
 static const uint64_t WAIT_NS = 1000000000u;
+enum { BATCHES = 16 }; // places of a ring that nothing is known about
 
 static void batch_close(renderer *g, test_batch *b)
 {
@@ -41,19 +42,35 @@ static test_batch *queue_place(test_queue *q, uint32_t i)
     return &q->batches[(q->first + i) % q->capacity];
 }
 
-static int queue_reserve(renderer *g)
+static int queue_grow(renderer *g, uint32_t capacity)
 {
     test_queue *q = &g->tests;
-    if (q->count < q->capacity) return 1;
-    const uint32_t capacity = q->capacity ? q->capacity * 2 : 16;
     test_batch *batches = memory_alloc_zeroed(g->memory, capacity, sizeof *batches);
     if (!batches) return 0;
-    for (uint32_t i = 0; i < q->count; ++i) batches[i] = *queue_place(q, i);
+    for (uint32_t i = 0; i < q->capacity; ++i) batches[i] = *queue_place(q, i); // free places too: they keep their buffers
     memory_free(g->memory, q->batches, q->capacity, sizeof *q->batches);
     q->batches = batches;
     q->capacity = capacity;
     q->first = 0;
     return 1;
+}
+
+static int queue_reserve(renderer *g)
+{
+    const test_queue *q = &g->tests;
+    return q->count < q->capacity || queue_grow(g, q->capacity ? q->capacity * 2 : BATCHES);
+}
+
+// A test waits for `latency` calls of renderer_collect more; by the driver's clock nobody knows how many.
+result tests_reserve(renderer *g, uint32_t tests_a_step)
+{
+    test_queue *q = &g->tests;
+    const uint32_t places = q->by_driver ? BATCHES : q->latency + 2;
+    if (tests_a_step == 0) return RESULT_OK;
+    if (places > q->capacity && !queue_grow(g, places)) return RESULT_NO_MEMORY;
+    for (uint32_t i = q->count; i < q->capacity; ++i)
+        if (!batch_reserve(g, queue_place(q, i), tests_a_step)) return RESULT_NO_MEMORY;
+    return RESULT_OK;
 }
 
 static void batch_fill(renderer *g, test_batch *b, const cull_test *tests, uint32_t count)

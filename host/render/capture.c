@@ -20,6 +20,13 @@ static picture_slot *slot_make(renderer *g, uint32_t slot)
     return *page ? &(*page)[slot % SLOT_PAGE] : NULL;
 }
 
+result pictures_reserve(renderer *g, uint32_t slots)
+{
+    for (uint32_t slot = 0; slot < slots && slot < SLOT_PAGE * SLOT_PAGES; slot += SLOT_PAGE)
+        if (!slot_make(g, slot)) return RESULT_NO_MEMORY;
+    return RESULT_OK;
+}
+
 static void slot_empty(renderer *g, picture_slot *s)
 {
     if (g->state.framebuffer == s->framebuffer) g->state.framebuffer = 0;

@@ -2,13 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "gl.h"
 
-#include <string.h>
+#include <portcullis/box.h>
 
-static cull_box box_of(const scene *s, uint32_t i)
-{
-    const cull_boxes *b = &s->boxes;
-    return (cull_box){{b->min_x[i], b->min_y[i], b->min_z[i]}, {b->max_x[i], b->max_y[i], b->max_z[i]}};
-}
+#include <string.h>
 
 static void set_bit(uint32_t *bits, uint32_t i)
 {
@@ -32,7 +28,7 @@ result renderer_floor(renderer *g, const camera *c, report *r, uint32_t *item_bi
     boxes_begin(g, &v, p->counts);
     for (uint32_t i = 0; i < p->item_total; ++i) {
         eye_box widened;
-        const cull_box box = box_of(p->scene, i);
+        const cull_box box = cull_box_at(&p->scene->boxes, i);
         const box_fate fate = box_place(&v, &box, &widened);
         if (fate == BOX_NEAR) set_bit(item_bits, i);
         if (fate != BOX_TESTED) continue;

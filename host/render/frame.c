@@ -84,6 +84,12 @@ result renderer_begin(renderer *g, const frame_request *q, report *r)
     return gl_check(g, r, "beginning a frame");
 }
 
+result renderer_reserve(renderer *g, uint32_t tests_a_step, uint32_t slots, report *r)
+{
+    if (tests_reserve(g, tests_a_step) == RESULT_OK && pictures_reserve(g, slots) == RESULT_OK) return gl_check(g, r, "making room for box tests");
+    return report_no_memory(r, g->scene.scene ? g->scene.scene->path : NULL);
+}
+
 static void add_run(renderer *g, const render_layout *l, cull_run run)
 {
     assert(run.count >= 1 && run.count <= l->total && run.first <= l->total - run.count);

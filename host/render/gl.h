@@ -213,6 +213,7 @@ typedef struct test_queue {
     uint32_t by_driver; // 1: ready when the fences say so, whatever the latency
 } test_queue;
 
+result tests_reserve(renderer *g, uint32_t tests_a_step);
 void tests_close(renderer *g);
 
 // ---- Frames (frame.c, translucent.c) ----
@@ -220,7 +221,7 @@ void tests_close(renderer *g);
 typedef struct translucent_item {
     double distance2;
     const render_layout *layout;
-    uint32_t place;
+    uint32_t place, item; // item: global id, the same whatever the layout
 } translucent_item;
 
 typedef struct frame_state {
@@ -278,6 +279,7 @@ typedef struct slot_store {
     uint32_t spare_width_px, spare_height_px;
 } slot_store;
 
+result pictures_reserve(renderer *g, uint32_t slots);
 void pictures_close(renderer *g);
 void pictures_forget_layout(renderer *g, const render_layout *l);
 

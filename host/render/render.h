@@ -88,6 +88,10 @@ void renderer_forget_tests(renderer *g);
 // From then on answers are ready by count, whatever the driver's clock does: a test is readable in the first call of
 // renderer_collect, plus `steps` (bench --query-latency). Never called: when the driver says so, for a viewer.
 void renderer_query_latency(renderer *g, uint32_t steps);
+// Takes all memory that frames need with at most so many tests between two calls of renderer_collect, and slots below
+// `slots`: such frames allocate nothing afterwards, but what the driver does. After renderer_query_latency, which says how
+// many tests wait at once. RESULT_NO_MEMORY with a line; what was taken stays until renderer_close.
+result renderer_reserve(renderer *g, uint32_t tests_a_step, uint32_t slots, report *r);
 void renderer_capture(renderer *g, const render_layout *l, const cull_capture *capture); // slot < 65,536
 void renderer_show(renderer *g, const cull_picture *picture);
 void renderer_forget_pictures(renderer *g);

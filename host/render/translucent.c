@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "gl.h"
 
-#include <stdlib.h>
-
-static double distance2_of(const renderer *g, const render_layout *l, uint32_t place)
+static double distance2_of(const renderer *g, uint32_t item)
 {
     const scene *s = g->scene.scene;
-    const uint32_t item = l->order && place < s->item_count ? l->order[place] : place;
     const cull_boxes *b = &s->boxes;
     const double centre[3] = {((double)b->min_x[item] + b->max_x[item]) / 2, ((double)b->min_y[item] + b->max_y[item]) / 2,
                               ((double)b->min_z[item] + b->max_z[item]) / 2};
@@ -20,7 +17,8 @@ static void note(renderer *g, const render_layout *l, uint32_t place)
 {
     frame_state *f = &g->frame;
     if (f->translucent_count == f->translucent_capacity) translucent_draw(g); // an item came twice
-    f->translucent[f->translucent_count++] = (translucent_item){distance2_of(g, l, place), l, place};
+    const uint32_t item = l->order && place < l->item_count ? l->order[place] : place;
+    f->translucent[f->translucent_count++] = (translucent_item){distance2_of(g, item), l, place, item};
 }
 
 void translucent_note(renderer *g, const render_layout *l, const cull_run *runs, uint32_t run_count)
@@ -34,11 +32,33 @@ void translucent_note(renderer *g, const render_layout *l, const cull_run *runs,
     }
 }
 
-static int farthest_first(const void *a, const void *b)
+// Farthest first; at one distance by global id, so no culler's order shows.
+static int stands_before(const translucent_item *a, const translucent_item *b)
 {
-    const translucent_item *x = a, *y = b;
-    if (x->distance2 != y->distance2) return x->distance2 > y->distance2 ? -1 : 1;
-    return x->place < y->place ? -1 : x->place > y->place;
+    return a->distance2 != b->distance2 ? a->distance2 > b->distance2 : a->item < b->item;
+}
+
+static void sift_down(translucent_item *items, uint32_t root, uint32_t count)
+{
+    const translucent_item moved = items[root];
+    for (uint32_t child; (child = 2 * root + 1) < count; root = child) {
+        if (child + 1 < count && stands_before(&items[child], &items[child + 1])) child++;
+        if (!stands_before(&moved, &items[child])) break;
+        items[root] = items[child];
+    }
+    items[root] = moved;
+}
+
+// Heap sort (Williams 1964), as the C library's qsort may allocate.
+static void sort(translucent_item *items, uint32_t count)
+{
+    for (uint32_t root = count / 2; root-- > 0;) sift_down(items, root, count);
+    for (uint32_t end = count; end-- > 1;) {
+        const translucent_item last = items[end];
+        items[end] = items[0];
+        items[0] = last;
+        sift_down(items, 0, end);
+    }
 }
 
 void translucent_draw(renderer *g)
@@ -47,7 +67,7 @@ void translucent_draw(renderer *g)
     if (f->translucent_count == 0) return;
     const GLuint program = program_find(g, PROGRAM_SHADED + (program_kind)f->request.mode, frame_variant(g));
     const draw_pass pass = {.view = &f->view};
-    qsort(f->translucent, f->translucent_count, sizeof *f->translucent, farthest_first);
+    sort(f->translucent, f->translucent_count);
     frame_bind(g);
     if (program) {
         state_program(g, program);

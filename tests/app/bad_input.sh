@@ -63,6 +63,11 @@ holds 'nothing was written' test ! -e out.json
 expect 'no command' 2 'no command' "$portcullis" frobnicate
 expect 'bad size' 2 'WxH' "$portcullis" bench good.obj --views auto:2 --size 12
 expect 'no such zone' 2 'zones of this scene' "$portcullis" bench good.obj --views auto:2 --zone kitchen=none
+expect 'a zone named twice' 2 'already' "$portcullis" bench good.obj --views auto:2 --zone all=none --zone all=brute
+expect 'unwritable result, told first' 2 'nowhere/out.json: error: cannot be written' "$portcullis" bench missing.obj --views auto:2 --json nowhere/out.json
+expect 'unwritable picture, told first' 2 'nowhere/out.png: error: cannot be written' "$portcullis" render missing.obj --views auto:2 -o nowhere/out.png
+expect 'no such culler, told before the scene is read' 2 "no culler 'nothing'" "$portcullis" bench missing.obj --views auto:2 --culler nothing --images pictures
+holds 'no folder is left' test ! -e pictures
 expect 'view out of range' 2 'counted from 0' "$portcullis" render good.obj --views auto:2 --view 2 -o out.png
 holds 'no picture was written' test ! -e out.png
 expect 'bad kind' 2 'city' "$portcullis" generate castle -o castle.obj

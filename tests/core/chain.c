@@ -128,6 +128,8 @@ static void a_chain_that_cannot_serve_is_refused_and_says_why(void **state)
     assert_refused("none+testcross+testcross-too", "'testcross-too' is the second crosser");
     assert_refused("none+testcross+testfilter+testcross", "'testcross' is the second crosser");
     assert_refused("none+missing", "no culler 'missing'; found: none, brute, test");
+    assert_refused("testpicture+testbad", "cullers 'testpicture' and 'testbad' both take pictures");
+    assert_refused("testpicture+testfilter+testcross+testbad", "both take pictures");
     assert_refused("none[x=1]", "has no option 'x'; it has: none");
     assert_refused("none+testfilter[keep=all,kept=1]", "'testfilter' has no option 'kept'; it has: keep, movers, pictures, walk");
 }
@@ -230,6 +232,41 @@ static void a_culler_that_tells_nonsense_after_build_is_refused_by_name(void **s
     assert_refused("testorder[hierarchy=0]+testfilter[walk=1]", "walks a hierarchy, and the select has none");
 }
 
+static void a_hierarchy_that_is_nonsense_is_refused_by_name(void **state)
+{
+    (void)state;
+    static const char *const cases[][2] = {
+        {"no_nodes", "no nodes"}, {"null_nodes", "nodes are not there"}, {"child_before", "do not come after"}, {"child_itself", "do not come after"},
+        {"child_past_end", "a child is no node"}, {"child_wraps", "a child is no node"}, {"child_twice", "child of two"}, {"child_lost", "cannot be reached"},
+        {"depth", "its depth"}, {"box_nan", "not finite"}, {"box_inside_out", "not finite"}, {"box_small", "does not cover a child"},
+        {"list_past_end", "items that are not there"}, {"list_wraps", "items that are not there"}, {"item_lost", "is in no node"}, {"item_twice", "in two runs"},
+        {"list_again", "more items than there are"}, {"item_uncovered", "do not cover it"}, {"subtree_past_end", "outside the zone"},
+        {"subtree_wraps", "outside the zone"}, {"subtree_short", "not what its nodes list"}, {"subtree_shifted", "not what its nodes list"},
+        {"listed_wild", "not in the zone"}, {"listed_lost", "is in no node"}, {"listed_past_end", "items that are not there"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        char chain[128];
+        snprintf(chain, sizeof chain, "testorder[spoil=%s]+testfilter", cases[i][0]);
+        assert_refused(chain, cases[i][1]);
+        assert_refused(chain, "culler 'testorder' lends a hierarchy that is nonsense");
+    }
+}
+
+static void a_hierarchy_that_is_sound_is_lent(void **state)
+{
+    (void)state;
+    static const char *const chains[] = {"testorder+testfilter[walk=1]", "testorder[spoil=listed]+testfilter[walk=1]", "testorder[spoil=listed_twice]+testfilter[walk=1]",
+                                         "testorder[spoil=no_subtrees]+testfilter[walk=1]", "testorder[spoil=depth]"}; // the last is lent to nobody
+    for (int i = 0; i < 5; ++i) {
+        static session s;
+        session_request q = small;
+        q.chain = chains[i];
+        assert_int_equal(session_open(&s, &q), RESULT_OK);
+        assert_int_equal(s.chain->hierarchy != NULL, i < 4);
+        session_close(&s);
+    }
+}
+
 static void a_culler_that_fails_is_named_and_nothing_of_it_is_used(void **state)
 {
     (void)state;
@@ -274,6 +311,8 @@ int main(void)
         cmocka_unit_test(the_stages_behind_a_select_are_lent_the_zone_in_its_order),
         cmocka_unit_test(the_zone_lent_is_the_scene),
         cmocka_unit_test(a_culler_that_tells_nonsense_after_build_is_refused_by_name),
+        cmocka_unit_test(a_hierarchy_that_is_nonsense_is_refused_by_name),
+        cmocka_unit_test(a_hierarchy_that_is_sound_is_lent),
         cmocka_unit_test(a_culler_that_fails_is_named_and_nothing_of_it_is_used),
         cmocka_unit_test(a_culler_without_memory_is_told_as_such),
     };

@@ -62,6 +62,17 @@ static const fault_case bounds[] = {
     {"picture_past_end", "a run outside the zone", "0"},
     {"picture_null_runs", "without its runs", "0"},
     {"pictures_taken_back", "took runs or pictures back", "0"},
+    {"replaces_runs", "it replaced a list of the batch", "0"},
+    {"replaces_pictures", "it replaced a list of the batch", "0"},
+    {"replaces_tests", "it replaced a list of the batch", "0"},
+    {"replaces_captures", "it replaced a list of the batch", "0"},
+    {"replaces_keep_pictures", "it replaced a list of the batch", "0"},
+    {"replaces_keep_captures", "it replaced a list of the batch", "0"},
+    {"zone_twice_over_steps", "an item given twice", "0"},
+    {"tests_endless", "more tests than it told", "0"},
+    {"captures_endless", "more captures than it told", "0"},
+    {"pictures_endless", "more pictures than it told", "0"},
+    {"capture_composed_early", "a slot that is empty", "0"},
 };
 
 enum { BAD_FRAMES = 3 };
@@ -121,6 +132,9 @@ static void checking_all_catches_the_same_and_an_item_given_twice(void **state)
     const fault_case twice = {"item_twice", "an item given twice", "0"};
     assert_case_is_caught("%s", &twice, VIEWER_CHECK_ALL);
     assert_case_is_caught("none+%s", &twice, VIEWER_CHECK_ALL);
+    const fault_case over_steps = {"item_twice_over_steps", "an item given twice", "0"};
+    assert_case_is_caught("%s", &over_steps, VIEWER_CHECK_ALL);
+    assert_case_is_caught("none+%s", &over_steps, VIEWER_CHECK_ALL);
 }
 
 // What a stage in front of a filter may not do; what else it does wrong is caught as in the last stage.
@@ -134,6 +148,7 @@ static void a_stage_that_steps_or_asks_before_the_last_is_caught(void **state)
         {"test_nan", "not finite", "0"},                           {"run_wild", "a run outside the zone", "1"},
         {"run_huge_count", "a run outside the zone", "0"},         {"runs_endless", "more runs than it told", "0"},
         {"capture_nan", "not finite", "0"},                        {"picture_empty_slot", "a slot that is empty", "0"},
+        {"replaces_runs", "it replaced a list", "0"},              {"replaces_captures", "it replaced a list", "0"},
     };
     static const fault_case middle = {"capture_given", "gives pictures, but is neither first nor last", "0"};
     for (size_t i = 0; i < sizeof early / sizeof *early; ++i) {
@@ -142,7 +157,28 @@ static void a_stage_that_steps_or_asks_before_the_last_is_caught(void **state)
         assert_case_is_caught("none+%s+testfilter[keep=all]", &early[i], VIEWER_CHECK_BOUNDS);
     }
     assert_case_is_caught("none+%s+testfilter[keep=all]", &middle, VIEWER_CHECK_BOUNDS);
-    assert_case_is_caught("testpicture+%s+testfilter[keep=all]", &middle, VIEWER_CHECK_BOUNDS);
+}
+
+static void what_was_drawn_stays_in_the_set_whatever_is_written_over_it(void **state)
+{
+    (void)state;
+    static const char *const chains[] = {"testbad[fault=rewrites_drawn]", "testbad[fault=rewrites_drawn,movers=1]", "none+testbad[fault=rewrites_drawn,movers=1]"};
+    for (int n = 0; n < 3; ++n)
+        for (int checks = 0; checks < 2; ++checks) {
+            static session s;
+            const session_request q = {.chain = chains[n], .boxes = {.items = 16, .movers = 3, .seed = 7}, .checks = checks ? VIEWER_CHECK_ALL : VIEWER_CHECK_BOUNDS};
+            assert_int_equal(session_open(&s, &q), RESULT_OK);
+            for (uint32_t frame = 1; frame <= 3; ++frame) {
+                uint32_t times[FAKE_PLACES_MOST];
+                session_frame(&s, &(session_view){.frame = frame});
+                session_set_by_item(&s, times);
+                for (uint32_t i = 0; i < FAKE_PLACES_MOST; ++i) assert_int_equal(s.driver.drawn[i], times[i]);
+                assert_int_equal(s.stats.steps, n == 2 ? 3 : 2);
+                assert_int_equal(s.stats.items_drawn, 16);
+                assert_int_equal(s.stats.faults, 0);
+            }
+            session_close(&s);
+        }
 }
 
 static void a_fault_is_told_even_after_many_warnings_of_a_file(void **state)
@@ -200,6 +236,7 @@ int main(void)
         cmocka_unit_test(every_fault_of_a_filter_is_caught_by_bounds),
         cmocka_unit_test(checking_all_catches_the_same_and_an_item_given_twice),
         cmocka_unit_test(a_stage_that_steps_or_asks_before_the_last_is_caught),
+        cmocka_unit_test(what_was_drawn_stays_in_the_set_whatever_is_written_over_it),
         cmocka_unit_test(a_fault_is_told_even_after_many_warnings_of_a_file),
         cmocka_unit_test(each_viewer_of_a_bad_culler_tells_of_it_once),
         cmocka_unit_test(without_a_driver_a_bad_culler_harms_nothing_either),

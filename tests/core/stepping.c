@@ -82,6 +82,26 @@ static void waiting_for_a_late_answer_is_a_stall_and_exact(void **state)
     session_close(&s);
 }
 
+// However many answers of earlier frames come first.
+static void waiting_gets_this_step_s_answers_past_any_number_of_old_ones(void **state)
+{
+    (void)state;
+    static const uint32_t old_counts[] = {1, HALF - 1, HALF, HALF + 1, ITEMS, ITEMS + 1, 2 * ITEMS, 2 * ITEMS + 1, 2000};
+    for (size_t n = 0; n < sizeof old_counts / sizeof *old_counts; ++n) {
+        static session s;
+        open_session(&s, "testmore[wait=1]");
+        s.driver.pixels_of = third_are_hidden;
+        for (uint32_t i = 0; i < old_counts[n]; ++i) s.driver.pending[i] = (fake_pending){HALF, 0, 1, 1}; // not ready before the wait
+        s.driver.pending_count = old_counts[n];
+        session_frame(&s, &(session_view){.frame = 2});
+        assert_hidden_third_is_dropped(&s);
+        assert_int_equal(s.stats.limits_hit, 0);
+        assert_int_equal(s.stats.stalls, 0);
+        assert_int_equal(s.driver.pending_count, 0);
+        session_close(&s);
+    }
+}
+
 static void more_takes_what_is_ready_without_a_stall(void **state)
 {
     (void)state;
@@ -257,18 +277,61 @@ static void a_filter_behind_a_picture_keeps_it_or_drops_it(void **state)
     }
 }
 
-static void a_filter_that_keeps_a_picture_without_its_capture_is_caught(void **state)
+static void a_capture_that_a_kept_picture_shows_is_taken_though_a_filter_drops_it(void **state)
 {
     (void)state;
     static session s;
     static const char *const chains[] = {"testpicture+testfilter[keep=all,pictures=torn]", "testpicture+testfilter[keep=all,pictures=torn]+testfilter[keep=all]"};
     for (int i = 0; i < 2; ++i) {
         open_session(&s, chains[i]);
-        session_frame(&s, &(session_view){.frame = 1, .right_m = 200});
-        assert_int_equal(s.stats.faults, 1);
-        session_assert_whole(&s);
-        assert_true(report_lines_is_one_with(&s.lines, "culler 'testfilter' misbehaves: it drops a capture and keeps its picture"));
-        assert_int_equal(s.driver.shows, 0);
+        frame_at(&s, at_picture, 1);
+        assert_int_equal(s.stats.captures, 1);
+        assert_half_is_shown(&s, 1);
+        session_close(&s);
+    }
+}
+
+static void captures_are_composed_of_earlier_ones_and_kept_with_what_they_need(void **state)
+{
+    (void)state;
+    static const struct { const char *chain; uint32_t captures, shows; } cases[] = {
+        {"testbad[fault=picture_composed]", 2, 1},
+        {"testbad[fault=picture_composed]+testfilter[keep=all]", 2, 1},
+        {"testbad[fault=picture_composed]+testfilter[keep=all,pictures=torn]", 2, 1},
+        {"testbad[fault=picture_composed]+testfilter[keep=all,pictures=drop]", 0, 0},
+        {"testbad[fault=picture_beside]+testfilter[keep=all]", 2, 1},
+        {"testbad[fault=picture_beside]+testfilter[keep=all,pictures=torn]", 1, 1},
+    };
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; ++n) {
+        static session s;
+        open_session(&s, cases[n].chain);
+        for (uint32_t frame = 1; frame < 3; ++frame) { // the slots are empty in the first and hold old pictures in the next
+            frame_at(&s, at_picture, frame);
+            assert_int_equal(s.driver.captures, cases[n].captures);
+            assert_int_equal(s.stats.captures, cases[n].captures);
+            assert_int_equal(s.driver.shows, cases[n].shows);
+        }
+        session_close(&s);
+    }
+}
+
+static void a_filter_that_walks_gets_the_select_s_pictures_and_no_candidates(void **state)
+{
+    (void)state;
+    static const struct { const char *chain; uint32_t steps, shown; } cases[] = {
+        {"testpicture[hierarchy=1]+testfilter[keep=all,walk=1]", 2, 1},
+        {"testpicture[hierarchy=1]+testfilter[keep=even]+testfilter[keep=all,walk=1]", 2, 1},
+        {"testpicture[hierarchy=1]+testfilter[keep=all,walk=1]+testfilter[keep=all]", 3, 1},
+        {"testpicture[hierarchy=1]+testfilter[keep=all,walk=1,pictures=drop]", 2, 0},
+    };
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; ++n) {
+        static session s;
+        open_session(&s, cases[n].chain);
+        frame_at(&s, at_picture, 1);
+        assert_half_is_shown(&s, cases[n].shown);
+        assert_int_equal(s.stats.captures, cases[n].shown);
+        assert_int_equal(s.stats.steps, cases[n].steps);
+        assert_int_equal(s.stats.nodes_visited, 1);
         session_close(&s);
     }
 }
@@ -294,6 +357,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(waiting_draws_first_then_tests_then_draws_what_was_seen),
         cmocka_unit_test(waiting_for_a_late_answer_is_a_stall_and_exact),
+        cmocka_unit_test(waiting_gets_this_step_s_answers_past_any_number_of_old_ones),
         cmocka_unit_test(more_takes_what_is_ready_without_a_stall),
         cmocka_unit_test(an_answer_of_an_earlier_frame_is_told_its_age_and_believed_by_no_one),
         cmocka_unit_test(a_missing_answer_counts_as_seen),
@@ -303,7 +367,9 @@ int main(void)
         cmocka_unit_test(a_group_around_the_eye_is_no_picture),
         cmocka_unit_test(each_viewer_has_pictures_of_its_own),
         cmocka_unit_test(a_filter_behind_a_picture_keeps_it_or_drops_it),
-        cmocka_unit_test(a_filter_that_keeps_a_picture_without_its_capture_is_caught),
+        cmocka_unit_test(a_capture_that_a_kept_picture_shows_is_taken_though_a_filter_drops_it),
+        cmocka_unit_test(captures_are_composed_of_earlier_ones_and_kept_with_what_they_need),
+        cmocka_unit_test(a_filter_that_walks_gets_the_select_s_pictures_and_no_candidates),
         cmocka_unit_test(without_a_capturing_driver_no_slot_is_filled),
     };
     return cmocka_run_group_tests_name("core stepping", tests, NULL, NULL);

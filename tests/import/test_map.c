@@ -160,6 +160,18 @@ static void comments_line_ends_and_trailing_numbers_are_read_over(void **state)
     scene_free(s, allocator_heap());
 }
 
+static void a_byte_order_mark_before_a_map_is_read_over(void **state)
+{
+    (void)state;
+    map_text m = {0};
+    map_add(&m, "\xef\xbb\xbf{\n\"classname\" \"worldspawn\"\n");
+    map_add_box(&m, low, high, "stone");
+    map_add(&m, "}\n");
+    scene *s = scene_of(&m, &doors_open);
+    assert_int_equal(s->item_count, 6);
+    scene_free(s, allocator_heap());
+}
+
 static void tool_textures_make_nothing_and_others_say_what_they_are(void **state)
 {
     (void)state;
@@ -262,7 +274,7 @@ static void each_entity_plays_its_part(void **state)
     assert_string_equal(s->objects[0].name, "worldspawn");
     assert_string_equal(s->objects[4].name, "func_wall 4");
     assert_int_equal(s->objects[4].item_count, 6);
-    assert_int_equal(s->solid_count, 10); // neither the trigger nor the illusion
+    assert_int_equal(s->solid_count, 11); // neither the trigger nor the illusion; the door shut and open
     uint32_t structure = 0;
     for (uint32_t i = 0; i < s->solid_count; ++i) structure += s->solids[i].kind == SOLID_STRUCTURE;
     assert_int_equal(structure, 3);
@@ -309,7 +321,8 @@ static void doors_open_along_their_angle_by_their_size_less_the_lip(void **state
         for (int k = 0; k < 3; ++k) {
             assert_true(open->movers[0].open_offset[k] == expected[k]);
             assert_true(shut->movers[0].open_offset[k] == expected[k]);
-            assert_true(open->solids[2].min[k] - shut->solids[2].min[k] == expected[k]);
+            assert_true(open->solids[3].min[k] - open->solids[2].min[k] == expected[k]);
+            assert_true(shut->solids[2].min[k] == open->solids[2].min[k] && shut->solids[3].min[k] == open->solids[3].min[k]);
         }
         const scene_item *door = &open->items[open->item_count];
         for (uint32_t i = 0; i < door->index_count; ++i) {
@@ -350,6 +363,7 @@ int main(void)
         cmocka_unit_test(a_turned_brush_keeps_its_shape),
         cmocka_unit_test(planes_that_repeat_or_only_touch_change_nothing),
         cmocka_unit_test(comments_line_ends_and_trailing_numbers_are_read_over),
+        cmocka_unit_test(a_byte_order_mark_before_a_map_is_read_over),
         cmocka_unit_test(tool_textures_make_nothing_and_others_say_what_they_are),
         cmocka_unit_test(texture_coordinates_follow_both_projections),
         cmocka_unit_test(each_entity_plays_its_part),

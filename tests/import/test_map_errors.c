@@ -98,7 +98,7 @@ static void what_is_no_map_is_refused(void **state)
     (void)state;
     expect_map_error("", "t.map:1: error: no entity in it; is this a .map file?");
     expect_map_error("// only this\n\n", "t.map:3: error: no entity in it; is this a .map file?");
-    expect_map_error("\x7f" "ELF\x02\x01\x01", "t.map:1: error: entity 0: expected '{' of an entity, found '?ELF?" "?" "?'; is this a .map file?");
+    expect_map_error("\x7f" "ELF\x02\x01\x01", "t.map:1: error: entity 0: expected '{' of an entity, found '\\x7fELF\\x02\\x01\\x01'; is this a .map file?");
     expect_map_error("{\n\"classname\" \"worldspawn\"\n}\n", "t.map: error: no polygon to draw; the scene is empty or holds tool surfaces only");
 }
 
@@ -111,6 +111,34 @@ static void keys_that_must_be_numbers_are_checked(void **state)
                      "t.map:3: error: entity 0: \"angle\" takes 1 number; repair its value");
     expect_map_error("{\n\"classname\" \"func_door\"\n\"lip\" \"1e300\"\n{\n" FIVE SIXTH "}\n}\n",
                      "t.map:3: error: entity 0: a lip within 2^20 units is needed; repair it");
+}
+
+static void a_message_shows_foreign_bytes_as_numbers_and_at_most_40_of_them(void **state)
+{
+    (void)state;
+    expect_map_error("\x1b[31mr\xc3\xa9\xff", "t.map:1: error: entity 0: expected '{' of an entity, found '\\x1b[31mr\\xc3\\xa9\\xff'; is this a .map file?");
+    char text[64], line[512];
+    int used = snprintf(line, sizeof line, "t.map:1: error: entity 0: expected '{' of an entity, found '");
+    for (int i = 0; i < 63; ++i) text[i] = (char)(unsigned char)0x9b; // a terminal's one-byte escape
+    text[63] = 0;
+    for (int i = 0; i < 40; ++i) used += snprintf(line + used, sizeof line - (size_t)used, "\\x9b");
+    snprintf(line + used, sizeof line - (size_t)used, "'; is this a .map file?");
+    expect_map_error(text, line);
+}
+
+static void an_empty_angle_of_a_door_is_taken_as_0_with_a_warning(void **state)
+{
+    (void)state;
+    heard h;
+    report r = hear(&h);
+    scene *s = NULL;
+    const char *text = "{\n\"classname\" \"func_door\"\n\"angle\" \"\"\n{\n" FIVE SIXTH "}\n}\n";
+    assert_int_equal(import_map("t.map", text, strlen(text), &doors_open, allocator_heap(), &r, &s), RESULT_OK);
+    assert_int_equal(r.warnings, 1);
+    assert_string_equal(h.text, "t.map:3: warning: entity 0: \"angle\" is empty; taken as 0");
+    assert_int_equal(s->mover_count, 1);
+    assert_true(s->movers[0].open_offset[0] == 24 / 32.0 && s->movers[0].open_offset[1] == 0 && s->movers[0].open_offset[2] == 0);
+    scene_free(s, allocator_heap());
 }
 
 static void a_scene_file_is_chosen_by_its_ending(void **state)
@@ -138,6 +166,8 @@ int main(void)
         cmocka_unit_test(other_games_formats_are_named),
         cmocka_unit_test(what_is_no_map_is_refused),
         cmocka_unit_test(keys_that_must_be_numbers_are_checked),
+        cmocka_unit_test(a_message_shows_foreign_bytes_as_numbers_and_at_most_40_of_them),
+        cmocka_unit_test(an_empty_angle_of_a_door_is_taken_as_0_with_a_warning),
         cmocka_unit_test(a_scene_file_is_chosen_by_its_ending),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,8 +1,10 @@
 // Camera paths: files there and back, faults, and the automatic views against a brute-force search for room.
 // SPDX-License-Identifier: MIT
+#include "brushes.h"
 #include "support.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,7 +52,7 @@ static void what_is_no_view_is_refused_with_its_line(void **state)
     expect_error("\n0 0 0 0 0 0 0 1 0 60 1 0.1 10\n", "t.views:2: error: forward is zero; correct the view");
 }
 
-static scene *real_map(const char *name)
+static scene *real_map_with(const char *name, const import_options *doors)
 {
     size_t size;
     char *text = real_scene(name, &size);
@@ -59,10 +61,15 @@ static scene *real_map(const char *name)
     report r = hear(&h);
     scene *s = NULL;
     const int is_map = strstr(name, ".map") != NULL;
-    const result done = is_map ? import_map(name, text, size, &doors_open, allocator_heap(), &r, &s) : import_boxes(name, text, size, allocator_heap(), &r, &s);
+    const result done = is_map ? import_map(name, text, size, doors, allocator_heap(), &r, &s) : import_boxes(name, text, size, allocator_heap(), &r, &s);
     assert_int_equal(done, RESULT_OK);
     memory_free(allocator_heap(), text, size + 1, 1);
     return s;
+}
+
+static scene *real_map(const char *name)
+{
+    return real_map_with(name, &doors_open);
 }
 
 static camera_path automatic(const char *what, const scene *s)
@@ -309,6 +316,141 @@ static void a_scene_without_any_room_has_a_walk_beside_it(void **state)
     scene_free(s, allocator_heap());
 }
 
+static void doors_change_no_view(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"quake/e1m1.map", "librequake/lq_e0m8.map", "librequake/lqdm12.map"};
+    static const char *const whats[] = {"auto:20", "auto:walk:20", "auto:walk:300"};
+    for (int m = 0; m < 3; ++m) {
+        scene *scenes[2] = {real_map_with(names[m], &doors_open), real_map_with(names[m], &doors_shut)};
+        for (int w = 0; w < 3; ++w) {
+            char *texts[2];
+            size_t sizes[2];
+            for (int d = 0; d < 2; ++d) {
+                camera_path path = automatic(whats[w], scenes[d]);
+                assert_int_equal(camera_path_text(&path, allocator_heap(), &texts[d], &sizes[d]), RESULT_OK);
+                camera_path_free(&path, allocator_heap());
+            }
+            assert_string_equal(texts[0], texts[1]);
+            for (int d = 0; d < 2; ++d) memory_free(allocator_heap(), texts[d], sizes[d] + 1, 1);
+        }
+        for (int d = 0; d < 2; ++d) scene_free(scenes[d], allocator_heap());
+    }
+}
+
+// ---- Scenes that leave no room, or are smaller than an eye ----
+
+// Planes of the view's volume that the item's box lies outside of, near among them: 0 where it touches the volume.
+static int planes_missed(const scene *s, const camera *c, uint32_t item)
+{
+    double right[3], up[3], back[3], planes[6][4];
+    camera_axes(c, right, up, back);
+    const double tall = tan(c->fovy_deg * 3.14159265358979 / 360), wide = tall * c->aspect;
+    for (int k = 0; k < 3; ++k) {
+        planes[0][k] = right[k] - wide * back[k];
+        planes[1][k] = -right[k] - wide * back[k];
+        planes[2][k] = up[k] - tall * back[k];
+        planes[3][k] = -up[k] - tall * back[k];
+        planes[4][k] = -back[k];
+        planes[5][k] = back[k];
+    }
+    const double offsets[6] = {0, 0, 0, 0, -c->near_m, c->far_m};
+    const double min[3] = {s->boxes.min_x[item], s->boxes.min_y[item], s->boxes.min_z[item]};
+    const double max[3] = {s->boxes.max_x[item], s->boxes.max_y[item], s->boxes.max_z[item]};
+    int missed = 0;
+    for (int p = 0; p < 6; ++p) {
+        double farthest = offsets[p];
+        for (int k = 0; k < 3; ++k) {
+            const double eye = c->eye[k] - s->zone.origin[k];
+            farthest += fmax(planes[p][k] * (min[k] - eye), planes[p][k] * (max[k] - eye));
+        }
+        missed += farthest < 0;
+    }
+    return missed;
+}
+
+static void expect_views_that_see(scene *s)
+{
+    camera_path path = automatic("auto:20", s);
+    int seeing = 0;
+    for (uint32_t v = 0; v < path.count; ++v) {
+        const camera *c = &path.cameras[v];
+        assert_null(camera_fault(c));
+        const double level = sqrt(c->forward[0] * c->forward[0] + c->forward[2] * c->forward[2]);
+        assert_true(fabs(atan2(c->forward[1], level)) <= 25.0001 * 3.14159265358979 / 180);
+        int sees = 0;
+        for (uint32_t i = 0; i < s->item_count + s->mover_count; ++i) sees |= planes_missed(s, c, i) == 0;
+        seeing += sees;
+    }
+    if (seeing < 5) fail_msg("%d of 20 views see something", seeing);
+    camera_path_free(&path, allocator_heap());
+    scene_free(s, allocator_heap());
+}
+
+static scene *scene_from(const char *name, const char *text)
+{
+    heard h;
+    report r = hear(&h);
+    scene *s = NULL;
+    const int is_obj = strstr(name, ".obj") != NULL;
+    const result done = is_obj ? import_obj(name, text, strlen(text), allocator_heap(), &r, &s) : import_boxes(name, text, strlen(text), allocator_heap(), &r, &s);
+    if (done != RESULT_OK) fail_msg("%s", h.text);
+    return s;
+}
+
+static void flat_scenes_are_seen(void **state)
+{
+    (void)state;
+    static const struct { const char *name, *text; } cases[] = {
+        {"floor.obj", "v 0 0 0\nv 4 0 0\nv 0 0 4\nf 1 3 2\n"},
+        {"wall.obj", "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 1 5 0\nv 0 3 0\nf 1 2 3 4 5\n"},
+        {"side.obj", "v 7 0 0\nv 7 0 400\nv 7 300 0\nf 1 2 3\n"},
+        {"tilted.obj", "v 0 0 0\nv 4 1 0\nv 0 2 4\nf 1 2 3\n"},
+        {"sheet.boxes", "boxes 2\n-8 0 -8 -1 0 8\n1 0 -8 8 0 8\n"},
+        {"slab.boxes", "boxes 1\n-8 0 -8 8 0.1 8\n"},
+        {"pane.boxes", "boxes 1\n3 0 -8 3 5 8\n"},
+    };
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; ++c) expect_views_that_see(scene_from(cases[c].name, cases[c].text));
+}
+
+static void a_map_of_one_brush_is_seen_and_its_lack_of_room_noted(void **state)
+{
+    (void)state;
+    static const double low[3] = {0, 0, 0}, highs[3][3] = {{64, 64, 64}, {8, 8, 8}, {4096, 4096, 16}};
+    for (int m = 0; m < 3; ++m) {
+        map_text text = {0};
+        map_add(&text, "{\n\"classname\" \"worldspawn\"\n");
+        map_add_box(&text, low, highs[m], "stone");
+        map_add(&text, "}\n");
+        scene *s = map_of(text.text, &doors_open);
+        heard h;
+        report r = hear(&h);
+        camera_path path;
+        assert_int_equal(camera_path_load("auto:20", s, ASPECT, allocator_heap(), &r, &path), RESULT_OK);
+        assert_true(h.notes > 0);
+        for (uint32_t v = 0; v < path.count; ++v) assert_true(room_at(s, path.cameras[v].eye) > 0);
+        camera_path_free(&path, allocator_heap());
+        expect_views_that_see(s);
+    }
+}
+
+static void a_model_of_a_millimetre_is_not_swallowed_by_near(void **state)
+{
+    (void)state;
+    static const double sizes_m[] = {1e-6, 1e-3, 0.1, 0.99};
+    for (int n = 0; n < 4; ++n)
+        for (int f = 0; f < 2; ++f) {
+            char text[256];
+            if (f == 0) snprintf(text, sizeof text, "v 0 0 0\nv %g 0 0\nv 0 %g 0\nv 0 0 %g\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n", sizes_m[n], sizes_m[n], sizes_m[n]);
+            else snprintf(text, sizeof text, "boxes 1\n0 0 0 %g %g %g\n", sizes_m[n], sizes_m[n], sizes_m[n]);
+            scene *s = scene_from(f == 0 ? "tiny.obj" : "tiny.boxes", text);
+            camera_path path = automatic("auto:1", s);
+            assert_true(fabs(path.cameras[0].near_m - sizes_m[n] / 16) < 1e-3 * sizes_m[n]);
+            camera_path_free(&path, allocator_heap());
+            expect_views_that_see(s);
+        }
+}
+
 static void counts_that_make_no_path_are_refused(void **state)
 {
     (void)state;
@@ -339,6 +481,10 @@ int main(void)
         cmocka_unit_test(a_walk_keeps_its_pace_and_its_distance_in_maps),
         cmocka_unit_test(a_walk_keeps_its_pace_and_its_distance_among_boxes),
         cmocka_unit_test(a_scene_without_any_room_has_a_walk_beside_it),
+        cmocka_unit_test(doors_change_no_view),
+        cmocka_unit_test(flat_scenes_are_seen),
+        cmocka_unit_test(a_map_of_one_brush_is_seen_and_its_lack_of_room_noted),
+        cmocka_unit_test(a_model_of_a_millimetre_is_not_swallowed_by_near),
         cmocka_unit_test(counts_that_make_no_path_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

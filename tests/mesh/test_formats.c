@@ -240,6 +240,37 @@ static void both_kinds_of_stl_give_the_scene_of_the_obj(void **state)
     remove_scene(obj);
 }
 
+static void an_ascii_stl_in_capitals_is_read(void **state)
+{
+    static writer w;
+    (void)state;
+    if (!has_openmesh()) return;
+    write_stl_ascii(&w);
+    scene *small = import_written("a.stl", &w);
+    for (size_t i = 0; i < w.used; ++i)
+        if (w.bytes[i] >= 'a' && w.bytes[i] <= 'z') w.bytes[i] = (char)(w.bytes[i] - 'a' + 'A');
+    assert_non_null(strstr(w.bytes, "OUTER LOOP"));
+    assert_written_same("a.stl", &w, small);
+    remove_scene(small);
+}
+
+static void bytes_behind_a_binary_stl_are_left_out_with_a_warning(void **state)
+{
+    static writer w;
+    captured c;
+    scene *s = NULL;
+    (void)state;
+    if (!has_openmesh()) return;
+    write_stl_binary(&w);
+    scene *exact = import_written("a.stl", &w);
+    captured_open(&c);
+    assert_int_equal(import_bytes("a.stl", w.bytes, w.used + 7, allocator_heap(), &c.report, &s), RESULT_OK);
+    assert_string_equal(c.text, "a.stl: warning: 7 bytes behind the last triangle that it counts are left out\n");
+    assert_same_geometry(exact, s);
+    remove_scene(exact);
+    remove_scene(s);
+}
+
 static void stl_faults_are_told_with_their_place(void **state)
 {
     static writer w;
@@ -349,6 +380,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_format_of_one_mesh_gives_one_scene),
         cmocka_unit_test(both_kinds_of_stl_give_the_scene_of_the_obj),
+        cmocka_unit_test(an_ascii_stl_in_capitals_is_read),
+        cmocka_unit_test(bytes_behind_a_binary_stl_are_left_out_with_a_warning),
         cmocka_unit_test(stl_faults_are_told_with_their_place),
         cmocka_unit_test(off_faults_are_told_with_their_line),
         cmocka_unit_test(ply_faults_are_told_with_their_line),

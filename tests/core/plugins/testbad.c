@@ -1,13 +1,13 @@
 // The test culler `testbad`: draws everything, and breaks the contract in the one way that its option `fault` names, in
 // frames below `until` or when it is created, built or opened.
 // SPDX-License-Identifier: MIT
-#define OPTION_COUNT 3
+#define OPTION_COUNT 4
 #define QUERY_FIELDS
 #include "shell.h"
 
 #include "testbad.h"
 
-enum { FAULT_OPTION, UNTIL, MOVERS };
+enum { FAULT_OPTION, UNTIL, MOVERS, SLOTS };
 
 static int has_fault(const cull_culler *c, const char *name)
 {
@@ -72,6 +72,7 @@ static void tell_nonsense(const cull_culler *c, cull_built *out)
     if (has_fault(c, "slots_absurd")) out->slot_count = absurd;
     if (has_fault(c, "captures_without_slots")) out->slot_count = 0;
     if (has_fault(c, "walks_nothing")) out->walks_hierarchy = 1;
+    if (c->values[SLOTS][0] == '0') out->max_captures = out->max_pictures = out->slot_count = 0;
 }
 
 static cull_result build(cull_culler *c, const cull_zone *zone, const cull_hierarchy *lent, cull_built *out)
@@ -109,7 +110,7 @@ static cull_progress step(cull_query *q, const cull_visit *visit, cull_batch *ba
 {
     const cull_culler *c = q->culler;
     const bad_fault *fault = bad_fault_find(c->values[FAULT_OPTION]);
-    bad_step s = {c->zone, visit, batch, CULL_DONE, BAD_RUNS + (c->values[MOVERS][0] == '1' ? c->zone->mover_capacity : 0)};
+    bad_step s = {c->host, c->zone, visit, batch, CULL_DONE, BAD_RUNS + (c->values[MOVERS][0] == '1' ? c->zone->mover_capacity : 0)};
     if (visit->step == 0) answer(c, visit, batch);
     if (fault && visit->view->frame < (uint32_t)strtoul(c->values[UNTIL], NULL, 10)) fault->spoil(&s);
     return s.progress;
@@ -126,6 +127,7 @@ static const cull_option options[OPTION_COUNT] = {
     {"fault", "none", NULL, "what it does wrong"},
     {"until", "1000000", NULL, "the first frame that it behaves in"},
     {"movers", "0", NULL, "1 takes movers"},
+    {"slots", "1", NULL, "0 takes no pictures"},
 };
 static const cull_descriptor descriptor = {"testbad", "1", "breaks the contract", options, OPTION_COUNT, CULL_SAMPLED};
 static const cull_plugin plugin = {.descriptor = &descriptor,

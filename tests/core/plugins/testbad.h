@@ -9,6 +9,7 @@
 enum { BAD_RUNS = 4, BAD_TESTS = 2, BAD_CAPTURES = 2, BAD_PICTURES = 2, BAD_SLOTS = 2, BAD_STEPS = 8 };
 
 typedef struct bad_step { // one step that was answered well, to be spoilt
+    const cull_host *host;
     const cull_zone *zone;
     const cull_visit *visit;
     cull_batch *batch;

@@ -49,6 +49,60 @@ static void takes_back(bad_step *s)
     else s->batch->run_count = 1;
 }
 
+// Nothing there may be touched.
+static void *elsewhere(void) { return (void *)(uintptr_t)0x40; }
+static void replaces_runs(bad_step *s) { s->batch->runs = elsewhere(); }
+static void replaces_keep_pictures(bad_step *s) { s->batch->keep_pictures = elsewhere(); }
+static void replaces_keep_captures(bad_step *s) { s->batch->keep_captures = elsewhere(); }
+
+static void replaces_pictures(bad_step *s)
+{
+    s->batch->pictures = elsewhere();
+    s->batch->picture_count = 1;
+}
+
+static void replaces_tests(bad_step *s)
+{
+    s->batch->tests = elsewhere();
+    s->batch->test_count = 1;
+}
+
+static void replaces_captures(bad_step *s)
+{
+    s->batch->captures = elsewhere();
+    s->batch->capture_count = 1;
+}
+
+// No fault: what was drawn in the first step stands.
+static void rewrites_drawn(bad_step *s)
+{
+    if (s->visit->step == 0) s->progress = CULL_MORE;
+    else
+        for (uint32_t i = 0; i < s->batch->run_count; ++i) s->batch->runs[i] = (cull_run){UINT32_MAX, UINT32_MAX};
+}
+
+// Each step gives what an earlier one gave.
+static void item_twice_over_steps(bad_step *s)
+{
+    if (s->visit->step == 0) {
+        s->batch->run_count = 1;
+        s->progress = CULL_MORE;
+    } else s->batch->runs[s->batch->run_count++] = one_item;
+}
+
+static void zone_twice_over_steps(bad_step *s)
+{
+    if (s->visit->step == 0) s->progress = CULL_MORE;
+    else s->batch->runs[s->batch->run_count++] = (cull_run){0, s->zone->item_count};
+}
+
+static void logs_and_runs_wild(bad_step *s)
+{
+    s->host->log(s->host, CULL_LOG_WARN, "testbad: about to run wild");
+    s->host->log(s->host, CULL_LOG_ERROR, "testbad: running wild");
+    run_wild(s);
+}
+
 static void returns_odd(bad_step *s) { s->progress = 17; }
 static void returns_negative(bad_step *s) { s->progress = -1; }
 static void more_for_ever(bad_step *s) { s->progress = CULL_MORE; }
@@ -62,6 +116,9 @@ static cull_test *add_test(bad_step *s)
 }
 
 static void test_given(bad_step *s) { (void)add_test(s); }
+static void tests_endless(bad_step *s) { s->batch->test_count = UINT32_MAX; }
+static void captures_endless(bad_step *s) { s->batch->capture_count = UINT32_MAX; }
+static void pictures_endless(bad_step *s) { s->batch->picture_count = UINT32_MAX; }
 static void tests_too_many(bad_step *s) { s->batch->test_count = BAD_TESTS + 1; }
 static void test_nan(bad_step *s) { add_test(s)->box.max.y = NAN; }
 static void test_infinite(bad_step *s) { add_test(s)->box.min.z = -INFINITY; }
@@ -154,6 +211,32 @@ static void pictures_taken_back(bad_step *s)
     } else s->batch->picture_count = 0;
 }
 
+// Slot 1 is composed of slot 0, which an earlier capture fills; the picture shows slot 1. No fault.
+static void picture_composed(bad_step *s)
+{
+    (void)add_capture(s, 0);
+    cull_capture *c = add_capture(s, 1);
+    c->slots = both_slots;
+    c->slot_count = 1;
+    (void)add_picture(s, 1);
+}
+
+// The same with a second capture that nobody needs. No fault.
+static void picture_beside(bad_step *s)
+{
+    (void)add_capture(s, 0);
+    (void)add_capture(s, 1);
+    (void)add_picture(s, 0);
+}
+
+static void capture_composed_early(bad_step *s)
+{
+    cull_capture *c = add_capture(s, 1);
+    c->slots = both_slots;
+    c->slot_count = 1;
+    (void)add_capture(s, 0);
+}
+
 // Behind the end of what was lent: only for a host whose lists end at guard pages.
 static void writes_past_runs(bad_step *s) { s->batch->runs[s->run_capacity] = one_item; }
 static void writes_past_tests(bad_step *s) { s->batch->tests[BAD_TESTS].tag = 1; }
@@ -173,6 +256,9 @@ const bad_fault *bad_fault_find(const char *name)
         FAULT(capture_null_slots), FAULT(capture_wild_run), FAULT(capture_null_runs), FAULT(capture_endless_runs),
         FAULT(pictures_too_many), FAULT(picture_empty_slot), FAULT(picture_slot), FAULT(picture_nan_error), FAULT(picture_negative_error),
         FAULT(picture_infinite_error), FAULT(picture_box), FAULT(picture_past_end), FAULT(picture_null_runs), FAULT(pictures_taken_back),
+        FAULT(replaces_runs), FAULT(replaces_pictures), FAULT(replaces_tests), FAULT(replaces_captures), FAULT(replaces_keep_pictures), FAULT(replaces_keep_captures),
+        FAULT(rewrites_drawn), FAULT(item_twice_over_steps), FAULT(zone_twice_over_steps), FAULT(logs_and_runs_wild), FAULT(tests_endless),
+        FAULT(captures_endless), FAULT(pictures_endless), FAULT(picture_composed), FAULT(picture_beside), FAULT(capture_composed_early),
         FAULT(writes_past_runs), FAULT(writes_past_tests), FAULT(writes_past_captures), FAULT(writes_past_pictures),
     };
 #undef FAULT

@@ -28,17 +28,27 @@ static int is_kept(const cull_culler *c, uint32_t item)
     return 1;
 }
 
+// A walker has no candidates that a select took its pictures' items out of.
+static int is_in_picture(const cull_visit *visit, const cull_batch *batch, uint32_t item)
+{
+    for (uint32_t p = 0; p < visit->picture_count; ++p)
+        for (uint32_t r = 0; batch->keep_pictures[p] && r < visit->pictures[p].run_count; ++r)
+            if (item - visit->pictures[p].runs[r].first < visit->pictures[p].runs[r].count) return 1;
+    return 0;
+}
+
 static void keep_of_run(const cull_culler *c, cull_run run, cull_batch *batch)
 {
     for (uint32_t i = run.first; i < run.first + run.count; ++i)
         if (is_kept(c, i)) batch->runs[batch->run_count++] = (cull_run){i, 1};
 }
 
-static void walk(const cull_culler *c, cull_batch *batch)
+static void walk(const cull_culler *c, const cull_visit *visit, cull_batch *batch)
 {
     for (uint32_t n = 0; n < c->lent->node_count; ++n) {
         const cull_node *node = &c->lent->nodes[n];
-        keep_of_run(c, (cull_run){node->first_item, node->item_count}, batch);
+        for (uint32_t i = node->first_item; i < node->first_item + node->item_count; ++i)
+            if (!is_in_picture(visit, batch, i)) keep_of_run(c, (cull_run){i, 1}, batch);
         batch->nodes_visited++;
     }
 }
@@ -53,11 +63,11 @@ static void choose_pictures(const cull_culler *c, const cull_visit *visit, cull_
 static cull_progress filter(cull_query *q, const cull_visit *visit, cull_batch *batch)
 {
     const cull_culler *c = q->culler;
-    if (!visit->candidates) walk(c, batch);
+    choose_pictures(c, visit, batch);
+    if (c->values[WALK][0] == '1' && !visit->candidates && !visit->candidate_count) walk(c, visit, batch);
     for (uint32_t i = 0; i < visit->candidate_count; ++i) keep_of_run(c, visit->candidates[i], batch);
     for (uint32_t i = 0; i < visit->mover_count; ++i)
         if (i % 2 == 0) batch->runs[batch->run_count++] = (cull_run){visit->movers[i].id, 1};
-    choose_pictures(c, visit, batch);
     return CULL_DONE;
 }
 

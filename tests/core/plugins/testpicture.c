@@ -1,7 +1,7 @@
 // The test culler `testpicture`: takes a picture of the first items once, and shows it instead of them while the eye
 // stays near the place that it was taken from. All other items, and these when the picture is lost, are drawn.
 // SPDX-License-Identifier: MIT
-#define OPTION_COUNT 3
+#define OPTION_COUNT 4
 #define QUERY_FIELDS                                      \
     float taken_from[3]; /* eye of the capture */         \
     uint32_t is_taken;                                    \
@@ -17,6 +17,29 @@ static uint32_t group_size(const cull_culler *c)
     return wanted && wanted < c->zone->item_count ? wanted : c->zone->item_count / 2;
 }
 
+typedef struct root { cull_hierarchy hierarchy; cull_node node; } root;
+
+static cull_box box_of_group(const cull_zone *zone, uint32_t count);
+
+// One node with all items.
+static cull_result lend_root(cull_culler *c)
+{
+    const uint32_t count = c->zone->item_count;
+    root *r = c->host->alloc(c->host, sizeof *r, _Alignof(root));
+    if (!r) return CULL_ERR_MEMORY;
+    memset(r, 0, sizeof *r);
+    r->node = (cull_node){.box = box_of_group(c->zone, count), .item_count = count, .subtree = {0, count}};
+    r->hierarchy = (cull_hierarchy){.nodes = &r->node, .node_count = 1, .item_count = count, .depth = 1};
+    c->lent = &r->hierarchy; // a select is lent none: its own stands there
+    return CULL_OK;
+}
+
+static void destroy(cull_culler *c)
+{
+    if (c->lent) c->host->free(c->host, (root *)c->lent, sizeof(root));
+    shell_destroy(c);
+}
+
 static cull_result build(cull_culler *c, const cull_zone *zone, const cull_hierarchy *lent, cull_built *out)
 {
     (void)lent;
@@ -27,7 +50,7 @@ static cull_result build(cull_culler *c, const cull_zone *zone, const cull_hiera
     out->max_captures = 1;
     out->max_pictures = 1;
     out->slot_count = 1;
-    return CULL_OK;
+    return c->values[3][0] == '1' ? lend_root(c) : CULL_OK;
 }
 
 static cull_box box_of_group(const cull_zone *zone, uint32_t count)
@@ -116,20 +139,19 @@ static cull_progress select_items(cull_query *q, const cull_visit *visit, cull_b
 
 static const void *get_extension(const cull_culler *c, const char *id)
 {
-    (void)c;
-    (void)id;
-    return NULL;
+    return strcmp(id, CULL_EXT_HIERARCHY) == 0 ? c->lent : NULL;
 }
 
 static const cull_option options[OPTION_COUNT] = {
     {"distance", "0.5", NULL, "metres that the eye may move from where the picture was taken"},
     {"items", "0", NULL, "how many items stand in the picture, 0: half of them"},
     {"pixels", "256", NULL, "width and height of the picture"},
+    {"hierarchy", "0", NULL, "1 lends one of a single node"},
 };
 static const cull_descriptor descriptor = {"testpicture", "1", "shows a picture instead of the first items", options, OPTION_COUNT, 0};
 static const cull_plugin plugin = {.descriptor = &descriptor,
                                    .create = shell_create,
-                                   .destroy = shell_destroy,
+                                   .destroy = destroy,
                                    .build = build,
                                    .open = shell_open,
                                    .close = shell_close,
