@@ -9,7 +9,6 @@ enum { SPREAD_TRIES = 400 };
 static const double PI = 3.14159265358979323846;
 static const double PITCH_MOST_DEG = 25, FOVY_DEG = 60;
 static const double FAR_LEAST_M = 16;
-static const double NEAR_LEAST_M = 1e-20;     // a camera's near is a float
 static const double FIGURE_EYE_M = 0.7;       // a player's or monster's eye above its origin
 static const double MESH_CLEARANCE_PART = 0.02; // of the diagonal: a model of 20 cm has no place 12 cm from itself
 static const double SMALL_SCENE_M = 1;         // below, no place in it is any eye's
@@ -43,7 +42,7 @@ static void direction_of(double yaw, double pitch, double out[3])
 
 camera auto_camera(const auto_views *a, const double at[3], double yaw, double pitch)
 {
-    camera c = {.up = {0, 1, 0}, .fovy_deg = FOVY_DEG, .aspect = a->aspect, .near_m = a->near_m, .far_m = far_for(a, at)};
+    camera c = {.up = {0, 1, 0}, .fovy_deg = FOVY_DEG, .aspect = a->aspect, .near_m = AUTO_NEAR_M, .far_m = far_for(a, at)};
     direction_of(yaw, pitch, c.forward);
     for (int k = 0; k < 3; ++k) c.eye[k] = a->origin[k] + at[k];
     return c;
@@ -144,8 +143,6 @@ result auto_views_open(const scene *s, double aspect, const allocator *memory, r
                         .random = {SEED},
                         .places = buffer_make(memory, sizeof(eye))};
     find_bounds(out);
-    const double extent = extent_of(out);
-    out->near_m = extent > 0 && extent < SMALL_SCENE_M ? fmax(extent * AUTO_NEAR_PART, NEAR_LEAST_M) : AUTO_NEAR_M;
     out->looks_from_afar = is_tiny_or_flat(out);
     for (uint32_t i = 0; i < s->item_count && !out->has_boxes; ++i) out->has_boxes = (s->items[i].flags & CULL_ITEM_BOX) != 0;
     if (free_space_open(s, out->origin, memory, &out->space) != RESULT_OK) return report_no_memory(r, s->path);
@@ -301,7 +298,7 @@ static camera camera_from_afar(auto_views *a, double yaw)
         pitch = random_pitch(&a->random);
         direction_of(yaw, pitch, ahead);
         random_point(a, at);
-        for (int k = 0; k < 3; ++k) at[k] -= fmax(way, BACK_LEAST_NEAR * a->near_m) * ahead[k];
+        for (int k = 0; k < 3; ++k) at[k] -= fmax(way, BACK_LEAST_NEAR * AUTO_NEAR_M) * ahead[k];
         if (is_outside(a, at) && has_room(a, at)) break;
     }
     return auto_camera(a, at, yaw, pitch);

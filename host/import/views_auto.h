@@ -10,8 +10,7 @@
 #include "views_space.h"
 
 #define AUTO_CLEARANCE_M 0.125 // 4 units: the near plane's corner at 16:9 is 0.1 m from the eye
-#define AUTO_NEAR_M 0.0625       // of a scene of 1 m or more; below, AUTO_NEAR_PART of its largest extent, or it would be swallowed
-#define AUTO_NEAR_PART 0.0625
+#define AUTO_NEAR_M 0.0625       // smaller scenes are looked at from far enough not to be swallowed
 #define AUTO_EYE_HEIGHT_M 1.7
 #define AUTO_STEP_M 0.3 // of a walk, a frame
 
@@ -25,7 +24,6 @@ typedef struct auto_views {
     double origin[3];       // world: the zone's, but for a scene of movers one that they don't shift
     double low[3], high[3]; // of everything, movers in all their places
     double aspect;
-    double near_m;
     random_stream random;
     buffer places; // eye: of point entities in air, shuffled
     int has_boxes;
