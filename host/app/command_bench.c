@@ -153,7 +153,7 @@ static result write_results(app *a, const output *o, const bench_result *b)
     return done;
 }
 
-static uint32_t tell_failures(app *a, const bench_result *b)
+static uint32_t tell_failures(app *a, const arguments *q, const bench_result *b)
 {
     uint32_t failed = 0;
     for (uint32_t i = 0; i < b->row_count; ++i) {
@@ -163,6 +163,8 @@ static uint32_t tell_failures(app *a, const bench_result *b)
             report_error(&a->report, NULL, 0, "%s promises to lose nothing, and missed %llu pixels and %llu items; worst is view %u", row->name,
                          (unsigned long long)row->missed_pixels, (unsigned long long)row->missed_items, row->worst_view);
         failed += bench_check_failed(row);
+        if (q->truth == BENCH_TRUTH && row->items_visible <= 0 && i == 0)
+            report_warning(&a->report, NULL, 0, "no view of this path sees anything; that nothing is missed says nothing");
     }
     return failed;
 }
@@ -186,7 +188,7 @@ static result run_bench(app *a, const arguments *q, const camera_path *path, uin
     if (done != RESULT_OK && q->images) (void)rmdir(q->images); // leaves it where something is in it
     if (done != RESULT_OK) return done;
     done = write_results(a, &(output){&bench, &labels, q->json}, &results);
-    *failed = tell_failures(a, &results);
+    *failed = tell_failures(a, q, &results);
     bench_result_free(&results);
     return done;
 }

@@ -11,8 +11,15 @@ static int is_blank(char c)
     return c == ' ' || c == '\t' || c == '\r';
 }
 
+// A byte order mark can only stand first: some editors put one there.
+static void skip_mark(line_scan *s)
+{
+    if (s->line == 1 && s->end - s->at >= 3 && memcmp(s->at, "\xef\xbb\xbf", 3) == 0) s->at += 3;
+}
+
 void line_scan_skip_blanks(line_scan *s)
 {
+    skip_mark(s);
     while (s->at < s->end && is_blank(*s->at)) s->at++;
 }
 

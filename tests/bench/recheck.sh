@@ -12,6 +12,7 @@ work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
 count=$(grep -c ' visible, frustum draws ' "$results")
 hash=$(git -C "$root" rev-parse HEAD 2>/dev/null | cut -c1-6)
+[ "$count" -gt 0 ] || skip "no results in $results"
 pick=$((0x${hash:-0} % count + 1))
 line=$(grep ' visible, frustum draws ' "$results" | sed -n "${pick}p")
 # shellcheck disable=SC2086 # words of the line

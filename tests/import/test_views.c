@@ -467,6 +467,17 @@ static void counts_that_make_no_path_are_refused(void **state)
     scene_free(s, allocator_heap());
 }
 
+static void a_byte_order_mark_is_skipped(void **state)
+{
+    (void)state;
+    static const char text[] = "\xef\xbb\xbf" "0 0 0 0 0 -1 0 1 0 60 1 0.1 100\n";
+    report r = {0};
+    camera_path path;
+    assert_int_equal(camera_path_parse("t.views", text, sizeof text - 1, allocator_heap(), &r, &path), RESULT_OK);
+    assert_int_equal(path.count, 1);
+    camera_path_free(&path, allocator_heap());
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -484,6 +495,7 @@ int main(void)
         cmocka_unit_test(doors_change_no_view),
         cmocka_unit_test(flat_scenes_are_seen),
         cmocka_unit_test(a_map_of_one_brush_is_seen_and_its_lack_of_room_noted),
+        cmocka_unit_test(a_byte_order_mark_is_skipped),
         cmocka_unit_test(a_model_of_a_millimetre_is_not_swallowed_by_near),
         cmocka_unit_test(counts_that_make_no_path_are_refused),
     };
