@@ -139,27 +139,31 @@ static void close_row(run *b, bench_row *row, const strategy *s)
     row->index_bytes = s->chain->index_bytes;
 }
 
-// Each view's median over the passes; of those the median, mean and tail over the path.
-static void close_times(run *b, bench_row *row, const strategy *s)
+// Each view's median over the passes, of cull_ns * cull_weight + gl_ms * gl_weight, into b->scratch.
+static double *medians_of_views(run *b, const strategy *s, double cull_weight, double gl_weight)
 {
     const uint32_t views = b->q->path->count, repeat = b->q->repeat;
     double *of_view = b->scratch, *of_pass = b->scratch + views;
-    for (int what = 0; what < 3; ++what) {
-        for (uint32_t v = 0; v < views; ++v) {
-            for (uint32_t p = 0; p < repeat; ++p) {
-                const size_t at = (size_t)p * views + v;
-                of_pass[p] = what == 0 ? s->cull_ns[at] : what == 1 ? s->gl_ms[at] : s->gl_ms[at] + s->cull_ns[at] * 1e-6;
-            }
-            of_view[v] = percentile(of_pass, repeat, 0.5);
+    for (uint32_t v = 0; v < views; ++v) {
+        for (uint32_t p = 0; p < repeat; ++p) {
+            const size_t at = (size_t)p * views + v;
+            of_pass[p] = s->cull_ns[at] * cull_weight + s->gl_ms[at] * gl_weight;
         }
-        if (what == 1) row->gl_ms = percentile(of_view, views, 0.5);
-        if (what == 2) row->total_ms = percentile(of_view, views, 0.5);
-        if (what > 0) continue;
-        row->cull_ns_mean = mean(of_view, views);
-        row->cull_ns_p95 = percentile(of_view, views, 0.95);
-        row->cull_ns_p99 = percentile(of_view, views, 0.99);
-        row->cull_ns = percentile(of_view, views, 0.5);
+        of_view[v] = percentile(of_pass, repeat, 0.5);
     }
+    return of_view;
+}
+
+static void close_times(run *b, bench_row *row, const strategy *s)
+{
+    const uint32_t views = b->q->path->count;
+    double *cull_ns = medians_of_views(b, s, 1, 0);
+    row->cull_ns_mean = mean(cull_ns, views);
+    row->cull_ns_p95 = percentile(cull_ns, views, 0.95);
+    row->cull_ns_p99 = percentile(cull_ns, views, 0.99);
+    row->cull_ns = percentile(cull_ns, views, 0.5);
+    row->gl_ms = percentile(medians_of_views(b, s, 0, 1), views, 0.5);
+    row->total_ms = percentile(medians_of_views(b, s, 1e-6, 1), views, 0.5);
 }
 
 // ---- Passes ----

@@ -22,11 +22,16 @@ static void drive_draw(void *user, const cull_run *runs, uint32_t count)
     renderer_draw(s->g, s->layout, runs, count);
 }
 
-static void mark_run_in(strategy *s, cull_run run, uint32_t *bits)
+// The global id at a place of the chain's order; movers stand behind the items in both.
+static uint32_t item_at(const strategy *s, uint32_t place)
 {
-    const uint32_t items = s->q->scene->item_count;
+    return place < s->q->scene->item_count && s->order ? s->order[place] : place;
+}
+
+static void mark_run_in(const strategy *s, cull_run run, uint32_t *bits)
+{
     for (uint32_t p = run.first; p < run.first + run.count; ++p) {
-        const uint32_t item = p < items && s->order ? s->order[p] : p;
+        const uint32_t item = item_at(s, p);
         bits[item / 32] |= 1u << (item % 32);
     }
 }
@@ -44,11 +49,10 @@ static void note_capture(strategy *s, const cull_capture *c)
 static void note_picture(strategy *s, const cull_picture *p)
 {
     const uint32_t *held = s->slot_bits + (size_t)p->slot * s->words;
-    const uint32_t items = s->q->scene->item_count;
     uint32_t missing = 0;
     for (uint32_t k = 0; k < p->run_count; ++k)
         for (uint32_t at = p->runs[k].first; at < p->runs[k].first + p->runs[k].count; ++at) {
-            const uint32_t item = at < items && s->order ? s->order[at] : at, bit = held[item / 32] & 1u << (item % 32);
+            const uint32_t item = item_at(s, at), bit = held[item / 32] & 1u << (item % 32);
             s->drawn_bits[item / 32] |= bit; // in D, though only in a picture
             missing |= bit == 0;
         }

@@ -12,7 +12,6 @@ enum { KEY_VIEWS = 256, KEY_VIEW, KEY_CULLER, KEY_MODE, KEY_DOORS, KEY_SIZE, KEY
 
 typedef struct arguments {
     const char *scene, *views, *culler, *out;
-    uint32_t view, has_view;
     picture_request picture;
     app_size size;
     door_state doors;
