@@ -36,7 +36,7 @@ static int wall_faces(const scene *s, const scene_item *item, const double eye[3
 
 void walls_in_front(const scene *s, const camera *c, uint32_t *item_bits)
 {
-    const double eye[3] = {c->eye[0] - s->zone.origin[0], c->eye[1] - s->zone.origin[1], c->eye[2] - s->zone.origin[2]};
+    const double eye[3] = {c->eye[0] - s->whole.origin[0], c->eye[1] - s->whole.origin[1], c->eye[2] - s->whole.origin[2]};
     memset(item_bits, 0xff, (s->item_count + s->mover_count + 31) / 32 * sizeof *item_bits);
     for (uint32_t i = 0; i < s->item_count; ++i) {
         const uint32_t sided = s->items[i].flags & (CULL_ITEM_WALL | CULL_ITEM_TWO_SIDED);

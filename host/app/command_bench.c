@@ -96,8 +96,8 @@ static result parse_zones(app *a, const arguments *q, zone_override *out)
     for (uint32_t i = 0; i < q->zone_count; ++i) {
         const char *equals = strchr(q->zones[i], '=');
         const size_t length = equals ? (size_t)(equals - q->zones[i]) : 0;
-        if (!equals || length != strlen(a->scene->zone.name) || memcmp(q->zones[i], a->scene->zone.name, length) != 0)
-            return report_error(&a->report, NULL, 0, "--zone '%s': write NAME=CHAIN; the zones of this scene are: %s", q->zones[i], a->scene->zone.name);
+        if (!equals || length != strlen(a->scene->zones[0].name) || memcmp(q->zones[i], a->scene->zones[0].name, length) != 0)
+            return report_error(&a->report, NULL, 0, "--zone '%s': write NAME=CHAIN; the zones of this scene are: %s", q->zones[i], a->scene->zones[0].name);
         if (out->chain) return report_error(&a->report, NULL, 0, "--zone '%s': that zone has a chain already; name it once", q->zones[i]);
         out->chain = equals + 1;
         if (strlen(suffix) + strlen(q->zones[i]) + 2 > sizeof suffix) return report_error(&a->report, NULL, 0, "--zone: too long");

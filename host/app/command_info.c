@@ -47,8 +47,8 @@ static geometry geometry_of_movers(const scene *s)
 
 static json_t *info_of(const scene *s)
 {
-    const double *o = s->zone.origin;
-    const cull_box b = s->zone.box;
+    const double *o = s->whole.origin;
+    const cull_box b = s->whole.box;
     const geometry movers = geometry_of_movers(s);
     json_t *bounds = json_pack("[f,f,f,f,f,f]", o[0] + b.min.x, o[1] + b.min.y, o[2] + b.min.z, o[0] + b.max.x, o[1] + b.max.y, o[2] + b.max.z);
     char hash[24];

@@ -30,7 +30,7 @@ static result zone_of_scene(chain *c)
         items[i] = (cull_item){from->first_index, from->index_count, from->polygon_count, from->material, from->flags, 0};
     }
     c->zone = (cull_zone){.items = items, .boxes = s->boxes, .positions = s->positions, .indices = s->indices, .walls = s->walls,
-                          .wall_vertices = s->wall_vertices, .planes = s->planes, .box = s->zone.box, .radius = s->zone.radius,
+                          .wall_vertices = s->wall_vertices, .planes = s->planes, .box = s->whole.box, .radius = s->whole.radius,
                           .item_count = s->item_count, .position_count = s->position_count, .index_count = s->index_count,
                           .wall_vertex_count = s->wall_vertex_count, .plane_count = s->plane_count, .mover_capacity = s->mover_count};
     return RESULT_OK;

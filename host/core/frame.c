@@ -300,7 +300,7 @@ static void finish_set(frame *f, uint32_t run_count, visible_set *out)
 static void begin(frame *f)
 {
     const chain *c = f->v->chain;
-    view_derive(f->q->camera, &f->q->frame, c->scene->zone.origin, &c->scene->zone.box, &f->view, &f->planes);
+    view_derive(f->q->camera, &f->q->frame, c->scene->whole.origin, &c->scene->whole.box, &f->view, &f->planes);
     f->volume = (cull_volume){f->planes.planes, f->planes.plane_count, 0};
     f->visit = (cull_visit){.view = &f->view, .volumes = &f->volume, .volume_count = 1, .slots = f->v->slots, .scratch = f->v->scratch};
     if (c->zone.mover_capacity) find_movers(f);

@@ -1,12 +1,14 @@
 // The scene in memory: flat arrays that an importer fills through a scene_builder, constant afterwards.
 // SPDX-License-Identifier: MIT
-// Invariant: positions are float, relative to the zone's double origin, multiples of one power-of-two step; items stand
-// in file order, the movers' items behind all others; an item's place in `items` is its global id.
+// Invariant: positions are float, relative to the scene's double origin (whole.origin), multiples of one power-of-two
+// step; items stand in file order, the movers' items behind all others; an item's place in `items` is its global id.
+// Zone origins are multiples of 1 m like the scene's, so a vertex is the same world point, bit for bit, in each zone.
 #ifndef PORTCULLIS_HOST_SCENE_H
 #define PORTCULLIS_HOST_SCENE_H
 
 #include "memory.h"
 #include "report.h"
+#include "view.h"
 
 #include <portcullis/culler.h>
 
@@ -35,10 +37,67 @@ typedef struct scene_item {
     uint32_t flags; // CULL_ITEM_*
 } scene_item;
 
-typedef struct scene_mover { // item scene.item_count + its place in scene.movers
+#define SCENE_NONE UINT32_MAX // no zone, door, mover ...
+
+typedef struct scene_mover { // item scene.item_count + its place in scene.movers; its geometry is its pose at rest
     const char *name;
-    double open_offset[3]; // from shut to open, metres; already applied to the geometry when doors are open
+    double open_offset[3];         // from shut to open, metres; already applied to the geometry when its door is open at rest
+    double pivot[3];               // world: what it turns about
+    uint32_t first_key, key_count; // its path, in scene.keys, by time; 0: it stays
+    uint32_t door;                 // that moves it, or SCENE_NONE
+    uint32_t loops;                // 1: behind the last key comes the first; 0: it stays there
 } scene_mover;
+typedef struct scene_key { double time_s, offset[3], turn_deg[3]; } scene_key; // from rest; turned about x, then y, then z
+
+// Where a mover is: world' = rotation (world at rest - pivot) + pivot + offset. rotation: rows, orthonormal.
+typedef struct scene_pose { double rotation[9], pivot[3], offset[3]; } scene_pose;
+
+typedef enum door_state { DOORS_OPEN, DOORS_SHUT } door_state;
+typedef struct scene_door {
+    const char *name;
+    door_state at_rest; // as the geometry of its mover stands
+    uint32_t mover;     // or SCENE_NONE: nothing to see
+} scene_door;
+
+// A convex body, world: inside where normal . p <= distance for its planes. A zone is the union of its hulls, less the
+// inside of the zones that lie in it.
+typedef struct scene_hull {
+    uint32_t zone, first_plane, plane_count; // in scene.hull_planes
+    double min[3], max[3];
+} scene_hull;
+
+enum { // scene_zone.flags
+    ZONE_EVERYWHERE = 1u << 0, // no hulls: all that no other zone takes (the outside, or the one zone of a plain scene)
+    ZONE_STRAY = 1u << 1,      // made up for items that no zone touches: looked at in every view, joined to nothing
+};
+typedef struct scene_zone {
+    const char *name;
+    const char *chain; // that its file names; NULL: none
+    double origin[3];  // a multiple of 1 m
+    uint32_t flags;
+    uint32_t parent;                     // the zone that it lies in, or SCENE_NONE
+    uint32_t first_hull, hull_count;     // in scene.hulls
+    uint32_t first_item, item_count;     // in scene.zone_items: global ids of what never moves, ascending
+    uint32_t first_portal, portal_count; // in scene.zone_portals: 2 * portal + side
+} scene_zone;
+
+typedef struct scene_portal {
+    const char *name;
+    uint32_t zones[2];                  // sides 0 and 1
+    uint32_t first_point, point_count;  // in scene.portal_points, counterclockwise seen from zones[0]
+    uint32_t door;                      // that closes it, or SCENE_NONE: always open
+    double plane[4];                    // normal . p + offset, unit normal, positive in zones[0]
+} scene_portal;
+
+typedef enum light_kind { LIGHT_POINT, LIGHT_SUN } light_kind;
+typedef struct scene_light {
+    const char *name;
+    light_kind kind;
+    double position[3], direction[3], reach; // reach: metres, of a point light
+    float colour[3];
+} scene_light;
+
+typedef struct scene_camera_path { const char *name; uint32_t first_camera, camera_count; } scene_camera_path;
 
 typedef enum place_kind { PLACE_PLAYER, PLACE_MONSTER, PLACE_OTHER } place_kind;
 typedef struct scene_place { // a point entity
@@ -58,18 +117,17 @@ typedef struct scene_solid { // convex body: inside where normal . p <= distance
 } scene_solid;
 typedef struct scene_solid_plane { double normal[3], distance; } scene_solid_plane;
 
-typedef struct scene_zone {
-    const char *name;
-    double origin[3];
-    cull_box box; // of everything, movers too, relative to the origin
-    float radius; // largest absolute coordinate
-} scene_zone;
+typedef struct scene_extent {
+    double origin[3]; // a multiple of 1 m
+    cull_box box;     // of everything, movers too, relative to the origin
+    float radius;     // largest absolute coordinate
+} scene_extent;
 
 typedef struct scene {
     arena memory;
     const char *path;
     uint64_t hash; // XXH3 of the arrays below, the same for the same geometry
-    scene_zone zone;
+    scene_extent whole;
     double step; // metres: every coordinate relative to the origin is a multiple of it
 
     cull_vec3 *positions;       // position_count
@@ -90,6 +148,23 @@ typedef struct scene {
     scene_solid *solids;
     scene_solid_plane *solid_planes;
 
+    scene_zone *zones;
+    scene_hull *hulls;               // of a zone together, zones in order
+    scene_solid_plane *hull_planes;
+    uint32_t *zone_items;            // zone_item_count
+    uint8_t *listings;               // per item that never moves: zones that list it, at most 255
+    scene_portal *portals;
+    double (*portal_points)[3];      // world, on the scene's step
+    uint32_t *zone_portals;          // 2 a portal
+    scene_door *doors;
+    scene_key *keys;
+    scene_light *lights;
+    scene_camera_path *paths;
+    camera *cameras;                 // of all paths
+    uint32_t zone_count, hull_count, hull_plane_count, zone_item_count, portal_count, portal_point_count;
+    uint32_t door_count, key_count, light_count, path_count, camera_count;
+    uint32_t stray_items;            // that no zone touched
+
     uint32_t position_count, index_count, polygon_count, item_count, mover_count;
     uint32_t wall_vertex_count, plane_count, material_count, object_count, place_count;
     uint32_t solid_count, solid_plane_count;
@@ -98,7 +173,13 @@ typedef struct scene {
 } scene;
 
 void scene_free(scene *s, const allocator *memory); // NULL is fine
-double scene_radius_m(const scene *s);               // half the diagonal of the zone's box
+double scene_radius_m(const scene *s);               // half the diagonal of the scene's box
+// Where the mover is at a time of its path, its door in that state.
+void scene_pose_at(const scene *s, uint32_t mover, double time_s, door_state door, scene_pose *out);
+// Holds the mover in that pose, world; for whole poses (no turn) as tight as the geometry.
+void scene_pose_box(const scene *s, uint32_t mover, const scene_pose *pose, double min[3], double max[3]);
+// Largest of normal . p - distance over the planes of the hull: below 0 inside. A distance where it is a face that is near.
+double scene_hull_height(const scene *s, uint32_t hull, const double p[3]);
 
 // ---- Building ----
 
@@ -131,6 +212,36 @@ result scene_builder_mover(scene_builder *b, const char *name, const double open
 result scene_builder_place(scene_builder *b, const scene_place *place);
 result scene_builder_solid(scene_builder *b, solid_kind kind, const scene_solid_plane *planes, uint32_t plane_count,
                            const double min[3], const double max[3]);
+// From now on everything goes through this: world = matrix * p (rows of 3 x 4, a turn, one scale above 0, and a move).
+typedef struct builder_transform { double rows[3][4]; } builder_transform;
+result scene_builder_transform(scene_builder *b, const builder_transform *t); // BAD_INPUT: not such a matrix
+void scene_builder_transform_end(scene_builder *b);                           // back to no transform
+
+// ---- Zones. A builder without any makes one, "all", everywhere. ----
+typedef struct builder_hull { const scene_solid_plane *planes; uint32_t plane_count; } builder_hull;
+typedef struct builder_zone {
+    const char *name, *chain;  // chain may be NULL
+    const builder_hull *hulls; // none: everywhere
+    uint32_t hull_count, parent;
+} builder_zone;
+typedef struct builder_portal {
+    const char *name;
+    const double (*points)[3];
+    uint32_t point_count, zones[2], door;
+    const double *normal; // towards zones[0]; NULL: found from the zones' hulls
+} builder_portal;
+typedef struct builder_path { const scene_key *keys; const double *pivot; uint32_t key_count, loops; } builder_path; // pivot NULL: its middle
+// Functions that check give NULL or what is wrong, a constant text that goes on after "the portal "/"the zone ". In
+// RESULT_BAD_INPUT cases *fault is that text.
+result scene_builder_zone(scene_builder *b, const builder_zone *z, uint32_t *out, const char **fault);
+result scene_builder_portal(scene_builder *b, const builder_portal *p, uint32_t *out, const char **fault);
+// mover: the last mover added so far is `scene_builder_mover_count() - 1`; SCENE_NONE: none.
+result scene_builder_door(scene_builder *b, const char *name, door_state at_rest, uint32_t mover, uint32_t *out);
+uint32_t scene_builder_mover_count(const scene_builder *b);
+result scene_builder_mover_path(scene_builder *b, uint32_t mover, const builder_path *p); // BAD_INPUT: times don't rise, not finite
+result scene_builder_light(scene_builder *b, const scene_light *l);
+result scene_builder_camera_path(scene_builder *b, const char *name, const camera *cameras, uint32_t count);
+
 void scene_builder_map(scene_builder *b); // the scene is a map: auto views start at its places
 // Origin, rounding, boxes, hash. Refuses (with a line) a scene without polygons, too wide for 1 mm in float, or over
 // 2^32 of anything.

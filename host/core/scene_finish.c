@@ -76,8 +76,8 @@ static result choose_origin(finish *f, const char *path, report *r)
         if (f->low[k] < -COORDINATE_MOST || f->high[k] > COORDINATE_MOST)
             return report_error(r, path, 0, "a coordinate beyond 1e9 m; move the scene nearer to its origin");
         const double middle = (f->low[k] + f->high[k]) / 2;
-        s->zone.origin[k] = floor(middle / ORIGIN_GRID_M + 0.5) * ORIGIN_GRID_M; // not to even: halves round alike wherever the scene lies
-        radius = fmax(radius, fmax(f->high[k] - s->zone.origin[k], s->zone.origin[k] - f->low[k]));
+        s->whole.origin[k] = floor(middle / ORIGIN_GRID_M + 0.5) * ORIGIN_GRID_M; // not to even: halves round alike wherever the scene lies
+        radius = fmax(radius, fmax(f->high[k] - s->whole.origin[k], s->whole.origin[k] - f->low[k]));
     }
     if (radius > ZONE_RADIUS_MOST)
         return report_error(r, path, 0, "the scene is %.0f m wide; one zone holds 32,768 m at 1 mm, so split or scale it", 2 * radius);
@@ -97,7 +97,7 @@ static void round_positions(finish *f)
     if (f->failed) return;
     for (uint32_t i = 0; i < s->position_count; ++i) {
         double to[3];
-        for (int k = 0; k < 3; ++k) to[k] = round_even((from[i][k] - s->zone.origin[k]) * steps) * s->step + 0.0;
+        for (int k = 0; k < 3; ++k) to[k] = round_even((from[i][k] - s->whole.origin[k]) * steps) * s->step + 0.0;
         s->positions[i] = (cull_vec3){(float)to[0], (float)to[1], (float)to[2]};
     }
 }
@@ -163,8 +163,8 @@ static void find_boxes(finish *f)
         all = cull_box_union(all, box);
     }
     s->boxes = (cull_boxes){axes[0], axes[1], axes[2], axes[3], axes[4], axes[5]};
-    s->zone.box = all;
-    s->zone.radius = cull_box_radius(all);
+    s->whole.box = all;
+    s->whole.radius = cull_box_radius(all);
 }
 
 // Plane ids: planes whose rounded numbers agree are one. Rounding only decides sharing, never a position.
@@ -195,7 +195,7 @@ static void number_planes(finish *f, plane_key *keys, uint32_t *slots, size_t sl
         s->walls[i] = (cull_wall){.first_vertex = from[i].first_vertex, .vertex_count = from[i].vertex_count};
         if (!from[i].vertex_count) continue;
         const double *p = from[i].plane;
-        const double offset = p[3] + p[0] * s->zone.origin[0] + p[1] * s->zone.origin[1] + p[2] * s->zone.origin[2];
+        const double offset = p[3] + p[0] * s->whole.origin[0] + p[1] * s->whole.origin[1] + p[2] * s->whole.origin[2];
         const uint32_t known = s->plane_count;
         s->walls[i].plane = plane_find(f, keys, slots, slot_count, key_of_plane(p, offset, s->step));
         if (s->plane_count > known) s->planes[known] = (cull_plane){{(float)p[0], (float)p[1], (float)p[2]}, (float)offset};
@@ -225,7 +225,6 @@ static void finish_lists(finish *f, const char *path)
     scene *s = f->s;
     const scene_builder *b = f->b;
     s->path = take_text(f, path);
-    s->zone.name = take_text(f, "all");
     s->normals = take_copy(f, &b->normals);
     s->vertex_materials = take_copy(f, &b->vertex_materials);
     s->materials = take_copy(f, &b->materials);
@@ -322,7 +321,7 @@ void scene_free(scene *s, const allocator *memory)
 
 double scene_radius_m(const scene *s)
 {
-    const cull_box b = s->zone.box;
+    const cull_box b = s->whole.box;
     const double x = (double)b.max.x - b.min.x, y = (double)b.max.y - b.min.y, z = (double)b.max.z - b.min.z;
     return sqrt(x * x + y * y + z * z) / 2;
 }

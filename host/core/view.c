@@ -92,22 +92,7 @@ static double half_tangent(const camera *c)
     return tan(c->fovy_deg * (PI / 360));
 }
 
-// What a frame needs of a camera, computed once.
-typedef struct frustum_shape {
-    double right[3], up[3], back[3];
-    double tall, wide; // half the picture at distance 1
-} frustum_shape;
-
-static frustum_shape shape_of(const camera *c)
-{
-    frustum_shape s;
-    camera_axes(c, s.right, s.up, s.back);
-    s.tall = half_tangent(c);
-    s.wide = s.tall * c->aspect;
-    return s;
-}
-
-static void clip_from_eye(const camera *c, const frustum_shape *s, double out[16])
+static void clip_from_eye(const camera *c, const view_base *s, double out[16])
 {
     const double share = c->near_m / c->far_m; // 0 for an infinite far; below 1 as near < far, even of neighbours
     const double slope = share / (1 - share), at_zero = c->near_m / (1 - share);
@@ -121,10 +106,29 @@ static void clip_from_eye(const camera *c, const frustum_shape *s, double out[16
     out[14] = at_zero;
 }
 
+static void shape_make(const camera *c, view_base *s)
+{
+    camera_axes(c, s->right, s->up, s->back);
+    s->tall = half_tangent(c);
+    s->wide = s->tall * c->aspect;
+}
+
 void camera_clip_from_eye(const camera *c, double out[16])
 {
-    const frustum_shape s = shape_of(c);
+    view_base s;
+    shape_make(c, &s);
     clip_from_eye(c, &s, out);
+}
+
+void view_base_make(const camera *c, const view_frame *f, view_base *out)
+{
+    assert(!camera_fault(c) && f->width_px > 0 && f->height_px > 0);
+    *out = (view_base){.camera = c, .frame = *f};
+    shape_make(c, out);
+    out->pixel_tangent = larger(2 * out->tall / f->height_px, 2 * out->wide / f->width_px);
+    const double tall = out->tall + out->pixel_tangent, wide = out->wide + out->pixel_tangent;
+    out->reach = sqrt((tall * tall + wide * wide) + 1);
+    clip_from_eye(c, out, out->clip_from_eye);
 }
 
 static double zone_corner_height(const cull_plane *p, const cull_box *b)
@@ -152,24 +156,10 @@ static void volume_add_side(view_volume *volume, const cull_guard *guard, const 
     volume_add(volume, cull_guard_plane(guard, normal, 0), zone_box);
 }
 
-static void volume_derive(const camera *c, const cull_guard *guard, const frustum_shape *s, const cull_box *zone_box, view_volume *volume)
-{
-    volume->plane_count = 0;
-    for (int side = -1; side <= 1; side += 2) {
-        double axis[3];
-        for (int i = 0; i < 3; i++) axis[i] = side * s->right[i];
-        volume_add_side(volume, guard, axis, s->wide, zone_box);
-        for (int i = 0; i < 3; i++) axis[i] = side * s->up[i];
-        volume_add_side(volume, guard, axis, s->tall, zone_box);
-    }
-    if (!isfinite(c->far_m)) return;
-    volume_add(volume, cull_guard_plane(guard, s->back, c->far_m), zone_box);
-}
-
-static void matrix_derive(const camera *c, const frustum_shape *s, const double eye[3], float out[16])
+static void matrix_derive(const view_base *b, const double eye[3], float out[16])
 {
     double m[16];
-    clip_from_eye(c, s, m);
+    memcpy(m, b->clip_from_eye, sizeof m);
     for (int row = 0; row < 4; row++) {
         const double line[3] = {m[row], m[4 + row], m[8 + row]};
         m[12 + row] -= dot(line, eye);
@@ -177,19 +167,19 @@ static void matrix_derive(const camera *c, const frustum_shape *s, const double 
     for (int i = 0; i < 16; i++) out[i] = (float)m[i];
 }
 
-void view_derive(const camera *c, const view_frame *f, const double zone_origin[3], const cull_box *zone_box, cull_view *view,
-                 view_volume *volume)
+static cull_guard guard_in_zone(const view_base *b, const view_place *z)
 {
-    assert(!camera_fault(c) && f->width_px > 0 && f->height_px > 0);
-    const frustum_shape s = shape_of(c);
-    const double pixel = larger(2 * s.tall / f->height_px, 2 * s.wide / f->width_px);
-    const double tall = s.tall + pixel, wide = s.wide + pixel;
-    cull_guard guard = {
-        .pixel_tangent = pixel, .reach = sqrt((tall * tall + wide * wide) + 1), .radius = (double)cull_box_radius(*zone_box)};
+    cull_guard guard = {.pixel_tangent = b->pixel_tangent, .reach = b->reach, .radius = (double)z->radius};
     for (int i = 0; i < 3; i++) {
-        guard.eye[i] = (c->eye[i] - zone_origin[i]) + 0.0; // never -0
-        guard.forward[i] = -s.back[i];
+        guard.eye[i] = (b->camera->eye[i] - z->origin[i]) + 0.0; // never -0
+        guard.forward[i] = -b->back[i];
     }
+    return guard;
+}
+
+void view_in_zone(const view_base *b, const view_place *z, cull_view *view)
+{
+    const cull_guard guard = guard_in_zone(b, z);
     memset(view, 0, sizeof *view);
     for (int i = 0; i < 3; i++) {
         view->eye[i] = (float)guard.eye[i];
@@ -200,13 +190,37 @@ void view_derive(const camera *c, const view_frame *f, const double zone_origin[
     view->eye_exact[3] = 1;
     view->pixel_tangent = guard.pixel_tangent;
     view->reach = guard.reach;
-    matrix_derive(c, &s, guard.eye, view->clip_from_zone);
-    view->pixels_per_tangent = (float)(f->height_px / (2 * s.tall));
-    view->near_distance = (float)c->near_m;
-    view->width_px = f->width_px;
-    view->height_px = f->height_px;
-    view->purpose = f->purpose;
-    view->frame = f->frame;
-    view->flags = f->flags;
-    volume_derive(c, &guard, &s, zone_box, volume);
+    matrix_derive(b, guard.eye, view->clip_from_zone);
+    view->pixels_per_tangent = (float)(b->frame.height_px / (2 * b->tall));
+    view->near_distance = (float)b->camera->near_m;
+    view->width_px = b->frame.width_px;
+    view->height_px = b->frame.height_px;
+    view->purpose = b->frame.purpose;
+    view->frame = b->frame.frame;
+    view->flags = b->frame.flags;
+}
+
+void view_volume_in_zone(const view_base *b, const view_place *z, view_volume *volume)
+{
+    const cull_guard guard = guard_in_zone(b, z);
+    volume->plane_count = 0;
+    for (int side = -1; side <= 1; side += 2) {
+        double axis[3];
+        for (int i = 0; i < 3; i++) axis[i] = side * b->right[i];
+        volume_add_side(volume, &guard, axis, b->wide, &z->box);
+        for (int i = 0; i < 3; i++) axis[i] = side * b->up[i];
+        volume_add_side(volume, &guard, axis, b->tall, &z->box);
+    }
+    if (isfinite(b->camera->far_m)) volume_add(volume, cull_guard_plane(&guard, b->back, b->camera->far_m), &z->box);
+}
+
+void view_derive(const camera *c, const view_frame *f, const double zone_origin[3], const cull_box *zone_box, cull_view *view,
+                 view_volume *volume)
+{
+    view_base base;
+    view_place place = {.box = *zone_box, .radius = cull_box_radius(*zone_box)};
+    memcpy(place.origin, zone_origin, sizeof place.origin);
+    view_base_make(c, f, &base);
+    view_in_zone(&base, &place, view);
+    view_volume_in_zone(&base, &place, volume);
 }

@@ -29,6 +29,20 @@ typedef struct view_volume {
     uint32_t plane_count;
 } view_volume;
 
+// What is the same for all zones that a camera sees, computed once a frame.
+typedef struct view_base {
+    const camera *camera; // as long as the base
+    view_frame frame;
+    double right[3], up[3], back[3];
+    double tall, wide;            // half the picture at distance 1
+    double pixel_tangent, reach;  // as in cull_view
+    double clip_from_eye[16];
+} view_base;
+void view_base_make(const camera *c, const view_frame *f, view_base *out);
+typedef struct view_place { double origin[3]; cull_box box; float radius; } view_place; // a zone, as a view sees it
+void view_in_zone(const view_base *b, const view_place *z, cull_view *out);
+void view_volume_in_zone(const view_base *b, const view_place *z, view_volume *out); // the whole frustum, as in view_derive
+
 // The camera seen from a zone: view, and the whole frustum as a guarded volume. Planes that the zone's box lies inside
 // of are left out. The far plane is one of them while far_m is finite.
 void view_derive(const camera *c, const view_frame *f, const double zone_origin[3], const cull_box *zone_box, cull_view *view,

@@ -5,8 +5,6 @@
 
 #include "../core/scene.h"
 
-typedef enum door_state { DOORS_OPEN, DOORS_SHUT } door_state;
-
 typedef struct import_options {
     door_state doors;
 } import_options;

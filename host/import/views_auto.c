@@ -99,7 +99,7 @@ static void include(auto_views *a, const double min[3], const double max[3])
 static void include_item(auto_views *a, uint32_t i)
 {
     const cull_boxes *b = &a->scene->boxes;
-    const double *o = a->scene->zone.origin;
+    const double *o = a->scene->whole.origin;
     const double min[3] = {o[0] + b->min_x[i], o[1] + b->min_y[i], o[2] + b->min_z[i]};
     const double max[3] = {o[0] + b->max_x[i], o[1] + b->max_y[i], o[2] + b->max_z[i]};
     include(a, min, max);
@@ -119,7 +119,7 @@ static void find_bounds(auto_views *a)
     if (!(a->low[0] <= a->high[0])) // movers without a body alone
         for (uint32_t i = 0; i < s->mover_count; ++i) include_item(a, s->item_count + i);
     for (int k = 0; k < 3; ++k) {
-        a->origin[k] = s->mover_count ? floor((a->low[k] + a->high[k]) / 2 + 0.5) : s->zone.origin[k];
+        a->origin[k] = s->mover_count ? floor((a->low[k] + a->high[k]) / 2 + 0.5) : s->whole.origin[k];
         a->low[k] -= a->origin[k];
         a->high[k] -= a->origin[k];
     }
@@ -278,7 +278,7 @@ static void random_point(auto_views *a, double out[3])
         out[1] = random_between(&a->random, s->boxes.min_y[i], s->boxes.max_y[i]);
         out[2] = random_between(&a->random, s->boxes.min_z[i], s->boxes.max_z[i]);
     } else random_of_triangle(a, item, out);
-    for (int k = 0; k < 3; ++k) out[k] += s->zone.origin[k] - a->origin[k];
+    for (int k = 0; k < 3; ++k) out[k] += s->whole.origin[k] - a->origin[k];
 }
 
 static int is_outside(const auto_views *a, const double at[3])

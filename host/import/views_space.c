@@ -236,7 +236,7 @@ result free_space_open(const scene *s, const double origin[3], const allocator *
     space->memory = memory;
     for (int k = 0; k < 3; ++k) {
         space->origin[k] = origin[k];
-        space->zone_from_origin[k] = s->zone.origin[k] - origin[k];
+        space->zone_from_origin[k] = s->whole.origin[k] - origin[k];
     }
     space->parts = buffer_make(memory, sizeof(space_part));
     space->triangles = buffer_make(memory, 9 * sizeof(double));

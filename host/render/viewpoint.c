@@ -25,7 +25,7 @@ result viewpoint_make(const renderer *g, const viewpoint_request *q, report *r, 
     const double shift[2] = {2 * q->jitter_px[0] / q->width_px, 2 * q->jitter_px[1] / q->height_px};
     for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 2; ++row) v.clip_from_eye[4 * column + row] += shift[row] * v.clip_from_eye[4 * column + 3];
-    for (int k = 0; k < 3; ++k) v.eye[k] = c->eye[k] - g->scene.scene->zone.origin[k];
+    for (int k = 0; k < 3; ++k) v.eye[k] = c->eye[k] - g->scene.scene->whole.origin[k];
     v.pixels_per_tangent = 0.5 * q->height_px / tan(c->fovy_deg * (3.14159265358979323846 / 360));
     viewpoint_finish(&v);
     *out = v;

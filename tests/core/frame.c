@@ -34,7 +34,7 @@ static void touched(const session *s, const session_view *v, uint8_t *out)
     const view_frame f = {.width_px = 640, .height_px = 360, .frame = v->frame, .purpose = CULL_VIEW_MAIN};
     cull_view view;
     view_volume volume;
-    view_derive(&c, &f, s->scene->zone.origin, &s->scene->zone.box, &view, &volume);
+    view_derive(&c, &f, s->scene->whole.origin, &s->scene->whole.box, &view, &volume);
     for (uint32_t i = 0; i < s->scene->item_count + s->scene->mover_count; ++i) {
         out[i] = 1;
         for (uint32_t p = 0; p < volume.plane_count; ++p) out[i] &= cull_plane_touches(volume.planes[p], cull_box_at(&s->scene->boxes, i));
@@ -50,9 +50,9 @@ static int has_corner_in_picture(const session *s, const session_view *v, uint32
     const cull_box b = cull_box_at(&s->scene->boxes, i);
     const double tangent = tan(c.fovy_deg * 0.017453292519943295 / 2);
     for (int corner = 0; corner < 8; ++corner) {
-        const double p[3] = {(double)(corner & 1 ? b.max.x : b.min.x) + s->scene->zone.origin[0] - c.eye[0],
-                             (double)(corner & 2 ? b.max.y : b.min.y) + s->scene->zone.origin[1] - c.eye[1],
-                             (double)(corner & 4 ? b.max.z : b.min.z) + s->scene->zone.origin[2] - c.eye[2]};
+        const double p[3] = {(double)(corner & 1 ? b.max.x : b.min.x) + s->scene->whole.origin[0] - c.eye[0],
+                             (double)(corner & 2 ? b.max.y : b.min.y) + s->scene->whole.origin[1] - c.eye[1],
+                             (double)(corner & 4 ? b.max.z : b.min.z) + s->scene->whole.origin[2] - c.eye[2]};
         double x = 0, y = 0, depth = 0;
         for (int k = 0; k < 3; ++k) {
             x += right[k] * p[k];

@@ -56,7 +56,7 @@ static void vertices_that_are_not_finite_are_refused_and_leave_nothing(void **st
     builder_fixture_triangle(f, at, 1);
     assert_int_equal(builder_fixture_finish(f), RESULT_OK);
     assert_int_equal(f->scene->position_count, 3);
-    assert_true(f->scene->zone.radius <= 1);
+    assert_true(f->scene->whole.radius <= 1);
 }
 
 static void vertices_of_an_unknown_material_are_refused(void **state)
@@ -87,7 +87,7 @@ static void a_scene_wider_than_32768_m_is_refused_and_one_of_it_is_not(void **st
     builder_fixture_triangle(f, high, 1);
     assert_int_equal(builder_fixture_finish(f), RESULT_OK);
     assert_true(f->scene->step == 1.0 / 1024); // just under 1 mm, as promised
-    assert_true(f->scene->zone.radius == 16384);
+    assert_true(f->scene->whole.radius == 16384);
     scene_free(f->scene, &f->memory.memory);
     f->scene = NULL;
     builder_fixture_triangle(f, over, 3);
@@ -141,12 +141,12 @@ static void every_position_is_a_step_s_multiple_within_half_a_step_of_the_true_o
             const float p[3] = {s->positions[i].x, s->positions[i].y, s->positions[i].z};
             for (int k = 0; k < 3; ++k) {
                 assert_true(is_multiple((double)p[k], s->step));
-                assert_true(fabs((double)p[k] - (truth[i][k] - s->zone.origin[k])) <= s->step / 2);
-                assert_true(fabsf(p[k]) <= s->zone.radius);
+                assert_true(fabs((double)p[k] - (truth[i][k] - s->whole.origin[k])) <= s->step / 2);
+                assert_true(fabsf(p[k]) <= s->whole.radius);
             }
         }
-        assert_true((double)s->zone.radius <= s->step * 16777216); // exact in float
-        if (s->step > 1e-19) assert_true((double)s->zone.radius >= s->step * 8388607); // and no coarser than it must be
+        assert_true((double)s->whole.radius <= s->step * 16777216); // exact in float
+        if (s->step > 1e-19) assert_true((double)s->whole.radius >= s->step * 8388607); // and no coarser than it must be
     }
 }
 
@@ -177,7 +177,7 @@ static void assert_same_arrays(const scene *a, const scene *b)
     assert_memory_equal(a->items, b->items, items * sizeof *a->items);
     assert_memory_equal(a->boxes.min_x, b->boxes.min_x, items * sizeof(float));
     assert_memory_equal(a->boxes.max_z, b->boxes.max_z, items * sizeof(float));
-    assert_memory_equal(&a->zone.box, &b->zone.box, sizeof a->zone.box);
+    assert_memory_equal(&a->whole.box, &b->whole.box, sizeof a->whole.box);
     assert_true(a->hash == b->hash);
 }
 
@@ -192,7 +192,7 @@ static void moving_a_scene_by_whole_metres_changes_nothing_but_its_origin(void *
         for (size_t m = 0; m < sizeof moves / sizeof *moves; ++m) {
             memcpy(boxes.at, moves[m], sizeof boxes.at);
             assert_int_equal(box_scene_make(&boxes, &f->memory.memory, &f->lines.report, &moved), RESULT_OK);
-            for (int k = 0; k < 3; ++k) assert_true(moved->zone.origin[k] - still->zone.origin[k] == moves[m][k]);
+            for (int k = 0; k < 3; ++k) assert_true(moved->whole.origin[k] - still->whole.origin[k] == moves[m][k]);
             assert_same_arrays(still, moved);
             scene_free(moved, &f->memory.memory);
         }

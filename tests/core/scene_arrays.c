@@ -74,7 +74,7 @@ static void add_numbered(builder_fixture *f, uint32_t number, const char *name)
 
 static void assert_item_is_number(const scene *s, uint32_t item, uint32_t number)
 {
-    const float low = (float)(10.0 * number - s->zone.origin[0]);
+    const float low = (float)(10.0 * number - s->whole.origin[0]);
     assert_true(s->boxes.min_x[item] == low && s->boxes.max_x[item] == low + 1);
     assert_true(s->boxes.max_y[item] - s->boxes.min_y[item] == 2 && s->boxes.max_z[item] - s->boxes.min_z[item] == 3);
 }
@@ -206,7 +206,7 @@ static void boxes_are_padded_and_the_zone_s_box_covers_them_all(void **state)
     assert_int_equal(box_scene_make(&boxes, &f->memory.memory, &f->lines.report, &f->scene), RESULT_OK);
     const scene *s = f->scene;
     const float *axes[6] = {s->boxes.min_x, s->boxes.min_y, s->boxes.min_z, s->boxes.max_x, s->boxes.max_y, s->boxes.max_z};
-    const float zone[6] = {s->zone.box.min.x, s->zone.box.min.y, s->zone.box.min.z, s->zone.box.max.x, s->zone.box.max.y, s->zone.box.max.z};
+    const float zone[6] = {s->whole.box.min.x, s->whole.box.min.y, s->whole.box.min.z, s->whole.box.max.x, s->whole.box.max.y, s->whole.box.max.z};
     for (int k = 0; k < 6; ++k) {
         float most = -INFINITY;
         const float sign = k < 3 ? -1 : 1;

@@ -51,8 +51,8 @@ static void a_box_is_one_item_of_six_polygons_that_look_out(void **state)
     assert_true(s->items[0].flags & CULL_ITEM_BOX);
     assert_true(fabs(volume_within(s, &s->items[0]) - 6) < 1e-4);
     assert_true(fabs(volume_within(s, &s->items[1]) - 1.5 * 0.5 * 1.5) < 1e-4);
-    assert_true(s->zone.origin[0] + s->boxes.min_x[1] == -2.5);
-    assert_true(s->zone.origin[2] + s->boxes.max_z[1] == 31.5);
+    assert_true(s->whole.origin[0] + s->boxes.min_x[1] == -2.5);
+    assert_true(s->whole.origin[2] + s->boxes.max_z[1] == 31.5);
     scene_free(s, allocator_heap());
 }
 

@@ -17,9 +17,9 @@ static scene *scene_of(map_text *m, const import_options *options)
 static void world_position(const scene *s, uint32_t vertex, double out[3])
 {
     const cull_vec3 p = s->positions[vertex];
-    out[0] = s->zone.origin[0] + p.x;
-    out[1] = s->zone.origin[1] + p.y;
-    out[2] = s->zone.origin[2] + p.z;
+    out[0] = s->whole.origin[0] + p.x;
+    out[1] = s->whole.origin[1] + p.y;
+    out[2] = s->whole.origin[2] + p.z;
 }
 
 // The loop's normal by Newell, unit length.

@@ -200,9 +200,9 @@ static polygon *polygons_of(const scene *s, double shift)
         uint32_t least = 0;
         for (uint32_t v = 0; v < wall->vertex_count; ++v) {
             const cull_vec3 p = s->positions[s->wall_vertices[wall->first_vertex + v]];
-            points[v][0] = (p.x + s->zone.origin[0]) * 32 - shift;
-            points[v][1] = (p.y + s->zone.origin[1]) * 32 - shift * 3;
-            points[v][2] = (p.z + s->zone.origin[2]) * 32 + shift * 2;
+            points[v][0] = (p.x + s->whole.origin[0]) * 32 - shift;
+            points[v][1] = (p.y + s->whole.origin[1]) * 32 - shift * 3;
+            points[v][2] = (p.z + s->whole.origin[2]) * 32 + shift * 2;
             for (int k = 0; k < 3; ++k) points[v][k] = nearbyint(points[v][k] * 4096) / 4096 + 0.0; // the scene's step differs
             if (memcmp(points[v], points[least], sizeof points[v]) < 0) least = v;
         }

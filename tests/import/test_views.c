@@ -143,7 +143,7 @@ static double room_at(const scene *s, const double p[3])
         double sum = 0;
         const double min[3] = {s->boxes.min_x[i], s->boxes.min_y[i], s->boxes.min_z[i]}, max[3] = {s->boxes.max_x[i], s->boxes.max_y[i], s->boxes.max_z[i]};
         for (int k = 0; k < 3; ++k) {
-            const double out = fmax(0, fmax(min[k] - (p[k] - s->zone.origin[k]), p[k] - s->zone.origin[k] - max[k]));
+            const double out = fmax(0, fmax(min[k] - (p[k] - s->whole.origin[k]), p[k] - s->whole.origin[k] - max[k]));
             sum += out * out;
         }
         least = fmin(least, sqrt(sum));
@@ -361,7 +361,7 @@ static int planes_missed(const scene *s, const camera *c, uint32_t item)
     for (int p = 0; p < 6; ++p) {
         double farthest = offsets[p];
         for (int k = 0; k < 3; ++k) {
-            const double eye = c->eye[k] - s->zone.origin[k];
+            const double eye = c->eye[k] - s->whole.origin[k];
             farthest += fmax(planes[p][k] * (min[k] - eye), planes[p][k] * (max[k] - eye));
         }
         missed += farthest < 0;

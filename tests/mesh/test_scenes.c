@@ -142,7 +142,7 @@ static void delft_moved_by_kilometres_is_the_same_scene(void **state)
         assert_int_equal(there->items[i].object, here->items[i].object);
         assert_int_equal(there->items[i].flags, here->items[i].flags);
     }
-    for (int k = 0; k < 3; ++k) assert_true(there->zone.origin[k] - here->zone.origin[k] == move[k]);
+    for (int k = 0; k < 3; ++k) assert_true(there->whole.origin[k] - here->whole.origin[k] == move[k]);
     for (uint32_t i = 0; i < here->index_count; ++i) { // relative to the origins, each corner is the same to the bit
         const cull_vec3 a = here->positions[here->indices[i]], b = there->positions[there->indices[i]];
         assert_memory_equal(&a, &b, sizeof a);

@@ -9,7 +9,7 @@ enum { SIDE = 64 };
 
 static cull_box box_at(const bed *b, const double low[3], const double high[3]) // world to the zone
 {
-    const double *o = b->s->zone.origin;
+    const double *o = b->s->whole.origin;
     return (cull_box){{(float)(low[0] - o[0]), (float)(low[1] - o[1]), (float)(low[2] - o[2])},
                       {(float)(high[0] - o[0]), (float)(high[1] - o[1]), (float)(high[2] - o[2])}};
 }

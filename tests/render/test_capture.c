@@ -19,7 +19,7 @@ static frame_request request(const camera *c)
 
 static cull_vec3 in_zone(const bed *b, double x, double y, double z)
 {
-    const double *o = b->s->zone.origin;
+    const double *o = b->s->whole.origin;
     return (cull_vec3){(float)(x - o[0]), (float)(y - o[1]), (float)(z - o[2])};
 }
 
@@ -154,7 +154,7 @@ static void clip_planes_cut_what_is_captured(void **state)
     bed_scene(b, quads, 1, NULL);
     cull_capture capture = whole_picture(b, &c, 8, &all, 1);
     capture.clip_plane_count = 2; // x > 0 and y > 0
-    const float at[2] = {(float)b->s->zone.origin[0], (float)b->s->zone.origin[1]};
+    const float at[2] = {(float)b->s->whole.origin[0], (float)b->s->whole.origin[1]};
     capture.clip_planes[0] = (cull_plane){{1, 0, 0}, at[0]};
     capture.clip_planes[1] = (cull_plane){{0, 1, 0}, at[1]};
     uint8_t *shown = frame_with(b, &q, &capture, &(cull_picture){.slot = 7, .runs = &all, .run_count = 1}, NULL);

@@ -114,9 +114,9 @@ static void cast_at(const scene *s, const camera *c, double px, double py, ray_h
         double p[3][3], side[3], edge = INFINITY;
         for (int i = 0; i < 3; ++i) {
             const cull_vec3 v = s->positions[s->indices[3 * t + (uint32_t)i]];
-            p[i][0] = s->zone.origin[0] + v.x - c->eye[0];
-            p[i][1] = s->zone.origin[1] + v.y - c->eye[1];
-            p[i][2] = s->zone.origin[2] + v.z - c->eye[2];
+            p[i][0] = s->whole.origin[0] + v.x - c->eye[0];
+            p[i][1] = s->whole.origin[1] + v.y - c->eye[1];
+            p[i][2] = s->whole.origin[2] + v.z - c->eye[2];
         }
         int positive = 0;
         for (int i = 0; i < 3; ++i) { // which side of the plane through the eye and the edge

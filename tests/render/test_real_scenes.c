@@ -31,10 +31,10 @@ static camera look_from(const scene *s, uint32_t i)
         c.eye[1] += 0.7;
         return c;
     }
-    const cull_box b = s->zone.box;
+    const cull_box b = s->whole.box;
     const double centre[3] = {((double)b.min.x + b.max.x) / 2, ((double)b.min.y + b.max.y) / 2, ((double)b.min.z + b.max.z) / 2};
     const double away = i % 2 ? 0.2 : 1.2; // of the radius
-    for (int k = 0; k < 3; ++k) c.eye[k] = s->zone.origin[k] + centre[k] - away * scene_radius_m(s) * (k == 1 ? -0.25 : c.forward[k]);
+    for (int k = 0; k < 3; ++k) c.eye[k] = s->whole.origin[k] + centre[k] - away * scene_radius_m(s) * (k == 1 ? -0.25 : c.forward[k]);
     return c;
 }
 

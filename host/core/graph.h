@@ -1,0 +1,22 @@
+// The zone graph at rest: which zones a point or a box touches. A binary tree of boxes over the zones' hulls.
+// SPDX-License-Identifier: MIT
+// Invariant: constant after open; a zone is never left out that the point or box touches, border included.
+#ifndef PORTCULLIS_HOST_GRAPH_H
+#define PORTCULLIS_HOST_GRAPH_H
+
+#include "scene.h"
+
+typedef struct graph graph;
+
+result graph_open(const scene *s, const allocator *memory, graph **out); // the scene is borrowed
+void graph_close(graph *g); // NULL is fine
+
+// Zones that reach to `distance` metres or nearer of the point: a hull of the zone is that near, and no hull of a zone in
+// it holds the point deeper than that. Zones everywhere too, never a stray zone. Each once, ascending; writes at most
+// `capacity`, returns how many there are.
+uint32_t graph_zones_at(const graph *g, const double p[3], double distance, uint32_t *zones, uint32_t capacity);
+// Zones that the box touches: a hull that it is not outside of (by one of the hull's planes or its bounds), and no hull
+// of a zone in it that holds the whole box in its inside. Borders count as touched.
+uint32_t graph_zones_of_box(const graph *g, const double min[3], const double max[3], uint32_t *zones, uint32_t capacity);
+
+#endif
