@@ -15,6 +15,7 @@ typedef struct run {
     report *r;
     renderer *g;
     truth truths[WALLS_COUNT]; // opened where a strategy is judged by it
+    motion motion; // of the truth
     strategy *strategies;
     bench_result *out;
     progress bar;
@@ -24,30 +25,28 @@ typedef struct run {
 static int needs_renderer(const run *b)
 {
     for (uint32_t k = 0; k < b->q->strategy_count; ++k)
-        if (b->strategies[k].chain->uses_renderer) return 1;
+        if (b->strategies[k].uses_renderer) return 1;
     return b->q->truth == BENCH_TRUTH || b->q->images;
 }
 
 static result open_strategies(run *b)
 {
     for (uint32_t k = 0; k < b->q->strategy_count; ++k) {
-        const result done = strategy_open(b->q, b->q->strategies[k].spec, NULL, b->r, &b->strategies[k]);
+        const result done = strategy_open(b->q, &b->q->strategies[k], NULL, b->r, &b->strategies[k]);
         if (done != RESULT_OK) return done;
     }
     return RESULT_OK;
 }
 
-// So that no frame allocates: as many tests a step and slots as the most demanding strategy.
+// So that no frame allocates: as many tests a step as the most demanding strategy.
 static result reserve(run *b)
 {
-    uint32_t tests = 0, slots = 0;
-    for (uint32_t k = 0; k < b->q->strategy_count; ++k)
-        for (uint32_t i = 0; i < b->strategies[k].chain->stage_count; ++i) {
-            const cull_built *built = &b->strategies[k].chain->stages[i].built;
-            tests = built->max_tests > tests ? built->max_tests : tests;
-            slots = built->slot_count > slots ? built->slot_count : slots;
-        }
-    return renderer_reserve(b->g, tests, slots, b->r);
+    uint32_t most = 0;
+    for (uint32_t k = 0; k < b->q->strategy_count; ++k) {
+        const uint32_t tests = strategy_tests(&b->strategies[k]);
+        most = tests > most ? tests : most;
+    }
+    return renderer_reserve(b->g, most, b->r);
 }
 
 // Only now is it known whether anything draws or tests.
@@ -56,10 +55,7 @@ static result open_renderer(run *b)
     const renderer_options options = {.target = RENDERER_HEADLESS, .width_px = b->q->width_px, .height_px = b->q->height_px};
     result done = renderer_open(&options, b->q->services->memory, b->r, &b->g);
     if (done == RESULT_OK) done = renderer_upload(b->g, b->q->scene, b->r);
-    for (uint32_t k = 0; k < b->q->strategy_count && done == RESULT_OK; ++k) {
-        b->strategies[k].g = b->g;
-        done = render_layout_open(b->g, b->strategies[k].chain->order, b->r, &b->strategies[k].layout);
-    }
+    for (uint32_t k = 0; k < b->q->strategy_count && done == RESULT_OK; ++k) done = strategy_attach(&b->strategies[k], b->g, b->r);
     if (done != RESULT_OK) return done;
     renderer_query_latency(b->g, b->q->query_latency);
     done = reserve(b);
@@ -82,6 +78,7 @@ static result find_truth(run *b, walls w)
     result done = truth_open(&request, b->q->services->memory, b->r, &b->truths[w]);
     for (uint32_t v = 0; v < b->q->path->count && done == RESULT_OK; ++v) {
         progress_tell(&b->bar, "truth");
+        motion_show(&b->motion, v, b->g);
         done = truth_add_view(&b->truths[w], b->g, &b->q->path->cameras[v], b->r);
     }
     return done;
@@ -89,15 +86,17 @@ static result find_truth(run *b, walls w)
 
 // ---- Counting ----
 
-static void add_counts(bench_row *row, const strategy *s, strategy_view *v)
+static void add_counts(bench_row *row, const strategy *s, const strategy_view *v)
 {
     const view_counts c = strategy_count(s, &v->set);
-    v->faults += v->stats.items_drawn > c.items; // more than there are: an item stands twice
     row->polygons_drawn += (double)c.polygons;
     row->triangles_drawn += (double)c.triangles;
     row->items_drawn += (double)c.items;
     row->runs += (double)c.runs;
     row->movers_drawn += (double)c.mover_polygons;
+    row->zones += v->stats.zones;
+    row->volumes += v->stats.volumes;
+    row->crossings += v->stats.crossings;
     row->queries += v->stats.queries;
     row->steps += v->stats.steps;
     row->draw_calls += v->draw_calls;
@@ -124,7 +123,7 @@ static void close_row(run *b, bench_row *row, const strategy *s)
     row->excess_items = row->polygons_items > 0 ? row->polygons_drawn / row->polygons_items : 0;
     double *const means[] = {&row->polygons_drawn, &row->polygons_visible, &row->polygons_items, &row->triangles_drawn, &row->items_drawn,
                              &row->items_visible,  &row->runs, &row->floor, &row->movers_drawn, &row->movers_visible, &row->queries,
-                             &row->steps, &row->draw_calls, &row->state_changes};
+                             &row->steps, &row->draw_calls, &row->state_changes, &row->zones, &row->volumes, &row->crossings};
     for (size_t i = 0; i < sizeof means / sizeof *means; ++i) *means[i] /= views;
     for (uint32_t v = 0; v < b->q->path->count; ++v) {
         row->missed_pixels += s->missed[v];
@@ -133,10 +132,11 @@ static void close_row(run *b, bench_row *row, const strategy *s)
             row->worst_view = v;
         }
     }
-    row->promises = s->chain->promises;
+    row->promises = s->promises;
     row->front_walls_only = s->walls == WALLS_FRONT_ONLY;
-    row->build_ms = s->chain->build_ms;
-    row->index_bytes = s->chain->index_bytes;
+    row->build_ms = s->build_ms;
+    row->index_bytes = s->index_bytes;
+    row->indices_built = s->indices_built;
 }
 
 // Each view's median over the passes, of cull_ns * cull_weight + gl_ms * gl_weight, into b->scratch.
@@ -156,6 +156,9 @@ static double *medians_of_views(run *b, const strategy *s, double cull_weight, d
 
 static void close_times(run *b, bench_row *row, const strategy *s)
 {
+    row->mover_update_ns = s->times.movers ? s->times.mover_ns / (double)s->times.movers : 0;
+    row->swap_ms = s->times.swaps ? s->times.swap_ns * 1e-6 / (double)s->times.swaps : 0;
+    row->swaps = s->times.swaps;
     const uint32_t views = b->q->path->count;
     double *cull_ns = medians_of_views(b, s, 1, 0);
     row->cull_ns_mean = mean(cull_ns, views);
@@ -174,7 +177,7 @@ static result compare_alone(run *b, uint32_t k, uint32_t view)
     const camera *c = &b->q->path->cameras[view];
     const size_t pixels = (size_t)b->q->width_px * b->q->height_px;
     truth *t = &b->truths[b->strategies[k].walls];
-    uint32_t *drawn = b->strategies[k].drawn_bits;
+    uint32_t *drawn = b->strategies[k].drawn_bits; // movers stand where the strategy's view had them
     id_picture alone;
     if (id_picture_open(b->q->scene, b->q->width_px, b->q->height_px, b->q->services->memory, &alone) != RESULT_OK) return report_no_memory(b->r, NULL);
     const id_request all = {.camera = c}, only = {.camera = c, .item_bits = drawn};
@@ -200,7 +203,7 @@ static result run_pass(run *b, uint32_t pass, uint32_t k)
     for (uint32_t v = 0; v < b->q->path->count; ++v) {
         strategy_view view;
         progress_tell(&b->bar, row->name);
-        result done = strategy_run_view(s, &(strategy_request){v, RENDER_SHADED, has_truth || counts ? MARK_DRAWN : MARK_NOTHING}, b->r, &view);
+        result done = strategy_run_view(s, &(strategy_request){.view = v, .mode = RENDER_SHADED, .marks = has_truth || counts ? MARK_DRAWN : MARK_NOTHING}, b->r, &view);
         if (done != RESULT_OK) return done;
         if (counts) add_counts(row, s, &view);
         faults += view.faults;
@@ -241,7 +244,7 @@ static result run_passes(run *b)
 static result open_result(const bench_request *q, report *r, bench_result *out)
 {
     const scene *s = q->scene;
-    *out = (bench_result){.memory = q->services->memory, .row_count = q->strategy_count, .views = q->path->count,
+    *out = (bench_result){.memory = q->services->memory, .row_count = q->strategy_count, .views = q->path->count, .zones = s->zone_count, .portals = s->portal_count,
                           .pixels = (uint64_t)q->width_px * q->height_px, .items_total = s->item_count};
     out->rows = memory_alloc_zeroed(out->memory, q->strategy_count, sizeof *out->rows);
     if (!out->rows) return report_no_memory(r, NULL);
@@ -252,7 +255,7 @@ static result open_result(const bench_request *q, report *r, bench_result *out)
 
 static result run_all(run *b)
 {
-    result done = open_strategies(b);
+    result done = motion_open(b->q->scene, b->q->doors, b->q->services->memory, &b->motion) == RESULT_OK ? open_strategies(b) : report_no_memory(b->r, NULL);
     if (done == RESULT_OK && needs_renderer(b)) done = open_renderer(b);
     const uint64_t passes = (uint64_t)b->q->repeat + (b->q->truth == BENCH_NO_TRUTH);
     const uint64_t truths = truth_is_needed(b, WALLS_BOTH_SIDES) + truth_is_needed(b, WALLS_FRONT_ONLY);
@@ -283,6 +286,7 @@ result bench_run(const bench_request *q, report *r, bench_result *out)
     done = b.strategies && b.scratch ? run_all(&b) : report_no_memory(r, NULL);
     for (uint32_t k = 0; b.strategies && k < q->strategy_count; ++k) strategy_close(&b.strategies[k]);
     for (walls w = 0; w < WALLS_COUNT; ++w) truth_close(&b.truths[w]);
+    motion_close(&b.motion);
     renderer_close(b.g);
     memory_free(memory, b.strategies, q->strategy_count, sizeof *b.strategies);
     memory_free(memory, b.scratch, scratch, sizeof *b.scratch);

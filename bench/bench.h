@@ -3,7 +3,7 @@
 #ifndef PORTCULLIS_BENCH_BENCH_H
 #define PORTCULLIS_BENCH_BENCH_H
 
-#include "../host/core/frame.h"
+#include "../host/core/world.h"
 #include "../host/import/views.h"
 #include "../host/render/render.h"
 #include "truth.h"
@@ -11,15 +11,20 @@
 typedef enum bench_truth { BENCH_TRUTH, BENCH_NO_TRUTH } bench_truth;
 typedef enum bench_ids { BENCH_RUNS, BENCH_IDS } bench_ids; // IDS: writing every drawn id belongs to cull_ns
 
+// Which chain each zone has. A set names them by zone (scene.zone_count, NULL entries: `chain`). With swap_views the zones
+// go on to the next set every so many views, zone i being i sets ahead, so that chains are mixed.
 typedef struct bench_strategy_request {
-    const char *name;       // as it stands in the results
-    const chain_spec *spec; // of the one zone
+    const char *name;                    // as it stands in the results
+    const chain_spec *chain;             // of zones that no set names
+    const chain_spec *const *const *sets; // set_count; may be NULL when that is 0
+    uint32_t set_count, swap_views;      // swap_views 0: the first set stays
 } bench_strategy_request;
 
 typedef struct bench_request {
     const scene *scene;
     const camera_path *path;
     const bench_strategy_request *strategies;
+    const door_state *doors; // how all doors stand; NULL: as the scene has them at rest
     loader *plugins;
     const host_services *services;
     uint32_t strategy_count, width_px, height_px, repeat, query_latency;
@@ -37,14 +42,19 @@ typedef struct bench_row {
     double movers_drawn, movers_visible, queries, steps, draw_calls, state_changes;
     double excess, excess_items, build_ms;
     uint64_t missed_pixels, missed_items, missed_pixels_max;
+    double zones, volumes, crossings; // zones reached, volumes they are seen through, portals tried
+    double mover_update_ns;           // CPU time to move one mover on its path; 0 where none moves
+    double swap_ms;                   // CPU time to give one zone another chain; 0 without swaps
+    uint64_t swaps;                   // zones given another chain, over all passes
     uint64_t portal_merges, limits_hit, stalls, faults, index_bytes;
+    uint32_t indices_built;    // zones whose chain was built
     uint32_t front_walls_only; // judged by walls that face the eye only: excess does not compare with rows that are not
     uint32_t worst_view, picture_differs; // picture_differs: drawing D alone gave another picture than the truth
 } bench_row;
 
 typedef struct bench_result {
     bench_row *rows; // strategy_count
-    uint32_t row_count, views, plugins_opened, gl_used;
+    uint32_t row_count, views, zones, portals, plugins_opened, gl_used;
     uint64_t pixels, polygons_total, items_total;
     char gl_name[256];
     const allocator *memory;

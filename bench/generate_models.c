@@ -72,7 +72,7 @@ void model_figure(obj_writer *w, spot foot, double height, double turn)
     turned_write(w, &s, foot, 40, 2);
 }
 
-void model_vase(obj_writer *w, spot foot, double height, uint32_t kind)
+static void vase_write(obj_writer *w, spot foot, double height, uint32_t kind, uint32_t around, uint32_t rows)
 {
     static const profile_point points[] = {{0, 0}, {.16, 0}, {.17, .03}, {.3, .2}, {.38, .42}, {.33, .62}, {.16, .78}, {.12, .86}, {.18, .97},
                                            {.2, 1}, {.17, .99}, {.1, .86}, {.12, .7}, {.28, .5}, {.26, .25}, {0, .1}};
@@ -80,7 +80,17 @@ void model_vase(obj_writer *w, spot foot, double height, uint32_t kind)
     const uint32_t k = kind % 4;
     const turned s = {.points = points, .count = COUNT_OF(points), .scale = height, .folds = folds[k], .fold_depth = depths[k],
                       .twist = twists[k]};
-    turned_write(w, &s, foot, 28, 2);
+    turned_write(w, &s, foot, around, rows);
+}
+
+void model_vase(obj_writer *w, spot foot, double height, uint32_t kind)
+{
+    vase_write(w, foot, height, kind, 28, 2);
+}
+
+void model_pot(obj_writer *w, spot foot, double height, uint32_t kind)
+{
+    vase_write(w, foot, height, kind, 12, 1);
 }
 
 void model_lamp(obj_writer *w, spot foot, double height)

@@ -12,6 +12,7 @@ void model_knot(obj_writer *w, spot middle, double radius);               // a t
 void model_column(obj_writer *w, spot foot, double height);               // fluted
 void model_figure(obj_writer *w, spot foot, double height, double turn);  // a robed figure
 void model_vase(obj_writer *w, spot foot, double height, uint32_t kind);  // kinds 0 .. 3, further ones repeat
+void model_pot(obj_writer *w, spot foot, double height, uint32_t kind);   // a vase of fewer triangles
 void model_lamp(obj_writer *w, spot foot, double height);
 void model_tree(obj_writer *w, spot foot, double height, random_stream *r); // sets its own materials
 

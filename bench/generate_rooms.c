@@ -1,8 +1,7 @@
 // rooms: a grid of furnished rooms joined by doorways, closed against the outside, written as one .obj object a room.
 // SPDX-License-Identifier: MIT
 // Invariant: all surfaces together are one closed surface without T-junctions whose seen side is the air.
-#include "generate_obj.h"
-#include "generate_random.h"
+#include "generate_zoned.h"
 
 enum {
     ROOM = 8 * METRE,   // side of a room
@@ -115,10 +114,16 @@ static void furniture_write(obj_writer *w, const room_plan *p, uint32_t room, co
     }
 }
 
-void generate_rooms(uint64_t rooms, uint64_t seed, const allocator *memory, text_file *out)
+static room_plan plan_of(uint64_t rooms, uint64_t seed)
 {
     room_plan p = {.seed = seed, .rooms = (uint32_t)rooms, .columns = 1};
     while ((uint64_t)p.columns * p.columns < rooms) p.columns++;
+    return p;
+}
+
+void generate_rooms(uint64_t rooms, uint64_t seed, const allocator *memory, text_file *out)
+{
+    const room_plan p = plan_of(rooms, seed);
     obj_writer w = obj_open(out, memory);
     for (uint32_t room = 0; room < p.rooms && !out->failed; ++room) {
         const room_shell s = shell_of(&p, room);
@@ -127,4 +132,101 @@ void generate_rooms(uint64_t rooms, uint64_t seed, const allocator *memory, text
         furniture_write(&w, &p, room, &s.body);
     }
     obj_close(&w);
+}
+
+// ---- Zones ----
+
+// Its leaf slides along the wall, away from the nearer corner.
+static void doorway_add(plan *out, const room_plan *p, uint32_t room, way w, random_stream *r)
+{
+    const int32_t from = doorway(p, room, w), x = (int32_t)column_of(p, room) * STEP, z = (int32_t)(room / p->columns) * STEP;
+    if (from < 0) return;
+    const int32_t start = from + (w == WAY_EAST ? z : x);
+    const plan_hole h = {
+        .rooms = {room, room + (w == WAY_EAST ? 1 : p->columns)},
+        .side = w == WAY_EAST ? SIDE_MAX_X : SIDE_MAX_Z,
+        .opening = {start, 0, start + DOOR_WIDE, DOOR_HIGH},
+        .plane = (w == WAY_EAST ? x : z) + ROOM + WALL / 2,
+        .depth = WALL,
+        .slide = (from > METRE ? -1 : 1) * (DOOR_WIDE + 2 * CENTIMETRE),
+        .door = random_below(r, 3) ? PLAN_GAP : PLAN_DOOR_OPEN,
+        .leaf = "door_wood",
+    };
+    plan_add_hole(out, &h);
+}
+
+static void rooms_plan(const room_plan *p, plan *out)
+{
+    random_stream r = random_make(p->seed ^ ROOM_KEY, 1);
+    for (uint32_t room = 0; room < p->rooms; ++room) {
+        const int32_t x = (int32_t)column_of(p, room) * STEP, z = (int32_t)(room / p->columns) * STEP, half = WALL / 2;
+        const block air = {.min = {x, 0, z}, .max = {x + ROOM, HEIGHT, z + ROOM}};
+        const block zone = {.min = {x - half, -half, z - half}, .max = {x + ROOM + half, HEIGHT + half, z + ROOM + half}};
+        plan_add_room(out, &(plan_room){.kind = "room", .number = room, .air = air, .zone = zone});
+        doorway_add(out, p, room, WAY_EAST, &r);
+        doorway_add(out, p, room, WAY_SOUTH, &r);
+    }
+    plan_index(out);
+}
+
+// ---- The walk: along the walls, where no furniture stands ----
+
+enum { RING = 55 * CENTIMETRE, RING_SIDE = ROOM - 2 * RING, EYE = 165 * CENTIMETRE };
+
+static place ring_place(const block *air, int32_t at)
+{
+    const int32_t corner = at / RING_SIDE % 4, rest = at % RING_SIDE;
+    const int32_t x[4] = {rest, RING_SIDE, RING_SIDE - rest, 0}, z[4] = {0, rest, RING_SIDE, RING_SIDE - rest};
+    return (place){air->min.x + RING + x[corner], EYE, air->min.z + RING + z[corner]};
+}
+
+static place hole_middle(const plan_hole *h)
+{
+    return plan_hole_place(h, (h->opening.u0 + h->opening.u1) / 2, EYE);
+}
+
+static int32_t ring_at(const plan *p, const block *air, uint32_t to)
+{
+    const plan_hole *h = plan_hole_at(p, to / 2);
+    const place at = hole_middle(h);
+    const int32_t x = at.x - air->min.x - RING, z = at.z - air->min.z - RING;
+    switch (to % 2 ? plan_opposite(h->side) : h->side) {
+    case SIDE_MIN_Z: return x;
+    case SIDE_MAX_X: return RING_SIDE + z;
+    case SIDE_MAX_Z: return 3 * RING_SIDE - x;
+    default: return 4 * RING_SIDE - z;
+    }
+}
+
+static void ring_walk(path_line *l, const plan *p, uint32_t room, uint32_t from, uint32_t to)
+{
+    const block *air = &plan_room_at(p, room)->air;
+    const int32_t whole = 4 * RING_SIDE, start = from == PLAN_OUTSIDE ? 0 : ring_at(p, air, from);
+    int32_t end = to == PLAN_OUTSIDE ? start : ring_at(p, air, to);
+    if (from != PLAN_OUTSIDE) path_to(l, hole_middle(plan_hole_at(p, from / 2)));
+    path_to(l, ring_place(air, start));
+    if (from == to || end > start) end -= whole; // a room that is left as it was entered is gone round
+    if (start - end > whole / 2 && from != to) {
+        end += whole;
+        for (int32_t at = (start / RING_SIDE + 1) * RING_SIDE; at < end; at += RING_SIDE) path_to(l, ring_place(air, at));
+    } else {
+        const int32_t turn = start + whole; // keeps what follows above 0
+        for (int32_t at = (turn - 1) / RING_SIDE * RING_SIDE; at > end + whole; at -= RING_SIDE) path_to(l, ring_place(air, at));
+        end += whole;
+    }
+    path_to(l, ring_place(air, end));
+    if (to != PLAN_OUTSIDE) path_to(l, hole_middle(plan_hole_at(p, to / 2)));
+}
+
+void zoned_rooms(zoned_scene *z)
+{
+    enum { OVER_FURNITURE = 205 * CENTIMETRE, UNDER_CEILING = 275 * CENTIMETRE };
+    const double walk_m = 125;
+    const room_plan p = plan_of(z->size, z->seed);
+    rooms_plan(&p, &z->plan);
+    if (z->plan.failed) return;
+    generate_rooms(z->size, z->seed, z->memory, &z->geometry);
+    path_wander(&z->walk, &(wander_request){.plan = &z->plan, .route = ring_walk, .seed = z->seed, .length_m = walk_m});
+    z->tour_low = OVER_FURNITURE;
+    z->tour_high = UNDER_CEILING;
 }

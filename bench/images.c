@@ -37,7 +37,7 @@ result picture_of(strategy *s, truth *t, const picture_request *q, report *r, ui
 {
     strategy_view view;
     *out_missed = 0;
-    const strategy_request request = {q->view, q->kind == PICTURE_ERROR ? RENDER_SHADED : q->mode, MARK_DRAWN};
+    const strategy_request request = {q->view, q->kind == PICTURE_ERROR ? RENDER_SHADED : q->mode, MARK_DRAWN, q->scissor};
     result done = strategy_restart(s, r);
     if (done == RESULT_OK) done = strategy_run_view(s, &request, r, &view);
     if (done == RESULT_OK) done = renderer_read(s->g, rgba, r);

@@ -10,6 +10,7 @@ typedef struct picture_request {
     uint32_t view;
     render_mode mode; // of PICTURE_DRAWN
     picture_kind kind;
+    render_scissor scissor;
 } picture_request;
 
 // Culls and draws one view into rgba (width * height * 4, top row first). The strategy must have a renderer. t may be

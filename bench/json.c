@@ -49,7 +49,7 @@ static json_t *context_of(const bench_result *b, const bench_request *q, const b
     gethostname(host, sizeof host - 1);
     cpu_model(model, sizeof model);
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)q->scene->hash);
-    return json_pack("{s:s, s:o, s:i, s:o, s:o, s:s, s:s, s:s, s:o, s:o, s:s, s:i, s:i, s:i, s:i, s:o, s:i}", "date", date, "host_name", json_text(host),
+    return json_pack("{s:s, s:o, s:i, s:o, s:o, s:s, s:s, s:s, s:o, s:o, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:o, s:i}", "date", date, "host_name", json_text(host),
                      "num_cpus", (int)sysconf(_SC_NPROCESSORS_ONLN), "cpu_model", json_text(model), "load_avg", load_average(), "library_version", PORTCULLIS_VERSION,
                      "library_build_type",
 #ifdef NDEBUG
@@ -59,7 +59,7 @@ static json_t *context_of(const bench_result *b, const bench_request *q, const b
 #endif
                      "commit", PORTCULLIS_COMMIT, "gl_renderer", json_text(b->gl_used ? b->gl_name : "none"), "scene", json_text(labels->scene), "scene_hash", hash,
                      "width_px", (int)q->width_px, "height_px", (int)q->height_px, "repeat", (int)q->repeat, "query_latency", (int)q->query_latency,
-                     "path", json_text(labels->path), "json_schema_version", 1);
+                     "zones", (int)b->zones, "portals", (int)b->portals, "path", json_text(labels->path), "json_schema_version", 1);
 }
 
 typedef struct counter { const char *name; double value; } counter;
@@ -102,17 +102,22 @@ static json_t *entry_of(const bench_result *b, const bench_request *q, const ben
         {"cull_ns_mean", row->cull_ns_mean}, {"cull_ns_p95", row->cull_ns_p95}, {"cull_ns_p99", row->cull_ns_p99},
         {"portal_merges", (double)row->portal_merges}, {"limits_hit", (double)row->limits_hit}, {"stalls", (double)row->stalls},
         {"movers_drawn", row->movers_drawn}, {"build_ms", row->build_ms}, {"index_bytes", (double)row->index_bytes}, {"queries", row->queries},
-        {"steps", row->steps}, {"faults", (double)row->faults}, {"plugins_opened", b->plugins_opened}, {"gl_used", b->gl_used}};
+        {"steps", row->steps}, {"zones", row->zones}, {"volumes", row->volumes}, {"crossings", row->crossings}, {"swaps", (double)row->swaps}, {"faults", (double)row->faults}, {"plugins_opened", b->plugins_opened},
+        {"indices_built", row->indices_built}, {"gl_used", b->gl_used}};
     const counter of_gl[] = {{"gl_ms", row->gl_ms}, {"total_ms", row->total_ms}, {"draw_calls", row->draw_calls}, {"state_changes", row->state_changes}};
     const counter of_truth[] = {
         {"polygons_visible", row->polygons_visible}, {"polygons_items", row->polygons_items}, {"items_visible", row->items_visible}, {"floor", row->floor},
         {"excess", ratio_by(row->excess, row->polygons_visible)}, {"excess_items", ratio_by(row->excess_items, row->polygons_items)},
         {"missed_pixels", (double)row->missed_pixels},
         {"missed_items", (double)row->missed_items}, {"missed_pixels_max", (double)row->missed_pixels_max}, {"movers_visible", row->movers_visible}};
+    const counter of_movers[] = {{"mover_update_ns", ratio_by(row->mover_update_ns, row->mover_update_ns)}};
+    const counter of_swaps[] = {{"swap_ms", ratio_by(row->swap_ms, (double)row->swaps)}};
     const counter last[] = {{"front_walls_only", row->front_walls_only}};
     set_counters(entry, always, sizeof always / sizeof *always, MEASURED);
     set_counters(entry, of_gl, sizeof of_gl / sizeof *of_gl, b->gl_used ? MEASURED : NOT_MEASURED);
     set_counters(entry, of_truth, sizeof of_truth / sizeof *of_truth, q->truth == BENCH_TRUTH ? MEASURED : NOT_MEASURED);
+    set_counters(entry, of_movers, 1, MEASURED);
+    set_counters(entry, of_swaps, 1, MEASURED);
     set_counters(entry, last, sizeof last / sizeof *last, MEASURED);
     return entry;
 }

@@ -49,7 +49,29 @@ typedef struct columns {
     int name_width;
     bench_truth truth;
     uint32_t gl_used;
+    uint32_t has_zones, has_motion; // more than one zone; movers on paths
 } columns;
+
+static columns columns_of(const bench_result *b, const bench_request *q)
+{
+    columns c = {.name_width = 8, .truth = q->truth, .gl_used = b->gl_used, .has_zones = b->zones > 1};
+    for (uint32_t i = 0; i < b->row_count; ++i) {
+        const int length = (int)strlen(b->rows[i].name);
+        c.name_width = length > c.name_width ? length : c.name_width;
+        c.has_motion |= b->rows[i].mover_update_ns > 0;
+    }
+    return c;
+}
+
+static int put_head(buffer *text, const columns *c)
+{
+    int good = put(text, "%-*s %10s %10s %8s %8s %8s", c->name_width, "strategy", "cull", "p95", "items", "polygons", "runs");
+    if (c->has_zones) good = good && put(text, " %8s %8s %9s %7s", "zones", "volumes", "crossings", "merges");
+    if (c->has_motion) good = good && put(text, " %9s", "a mover");
+    if (c->gl_used) good = good && put(text, " %9s %9s", "gl ms", "total ms");
+    if (c->truth == BENCH_TRUTH) good = good && put(text, " %8s %7s %9s %7s", "visible", "excess", "missed px", "items");
+    return good && put(text, "\n");
+}
 
 static int put_marks(buffer *text, const bench_row *row)
 {
@@ -59,9 +81,13 @@ static int put_marks(buffer *text, const bench_row *row)
 
 static int put_row(buffer *text, const bench_row *row, const columns *c)
 {
-    char t[2][16], n[5][16];
+    char t[3][16], n[9][16];
     int good = put(text, "%-*s %10s %10s %8s %8s %8s", c->name_width, row->name, short_time(row->cull_ns, t[0]), short_time(row->cull_ns_p95, t[1]),
                    short_count(row->items_drawn, n[0]), short_count(row->polygons_drawn, n[1]), short_count(row->runs, n[2]));
+    if (c->has_zones)
+        good = good && put(text, " %8s %8s %9s %7s", short_count(row->zones, n[5]), short_count(row->volumes, n[6]), short_count(row->crossings, n[7]),
+                           short_count((double)row->portal_merges, n[8]));
+    if (c->has_motion) good = good && put(text, " %9s", short_time(row->mover_update_ns, t[2]));
     if (c->gl_used) good = good && put(text, " %9.2f %9.2f", row->gl_ms, row->total_ms);
     if (c->truth == BENCH_TRUTH)
         good = good && put(text, " %8s %7s %9llu %7llu", short_count(row->polygons_visible, n[3]), short_excess(row, n[4]),
@@ -72,16 +98,12 @@ static int put_row(buffer *text, const bench_row *row, const columns *c)
 static int put_all(buffer *text, const bench_result *b, const bench_request *q, const bench_labels *labels)
 {
     char n[2][16];
-    columns c = {.name_width = 8, .truth = q->truth, .gl_used = b->gl_used};
-    for (uint32_t i = 0; i < b->row_count; ++i)
-        if ((int)strlen(b->rows[i].name) > c.name_width) c.name_width = (int)strlen(b->rows[i].name);
+    const columns c = columns_of(b, q);
     int good = put(text, "%s, %u views of %s, %s items, %s polygons\n", labels->scene, b->views, labels->path,
                    short_count((double)b->items_total, n[0]), short_count((double)b->polygons_total, n[1]));
+    if (c.has_zones) good = good && put(text, "%u zones, %u portals\n", b->zones, b->portals);
     if (b->gl_used) good = good && put(text, "drawn by %s\n", b->gl_name);
-    good = good && put(text, "%-*s %10s %10s %8s %8s %8s", c.name_width, "strategy", "cull", "p95", "items", "polygons", "runs");
-    if (b->gl_used) good = good && put(text, " %9s %9s", "gl ms", "total ms");
-    if (c.truth == BENCH_TRUTH) good = good && put(text, " %8s %7s %9s %7s", "visible", "excess", "missed px", "items");
-    good = good && put(text, "\n");
+    good = good && put_head(text, &c);
     for (uint32_t i = 0; i < b->row_count; ++i) good = good && put_row(text, &b->rows[i], &c);
     return good;
 }

@@ -4,16 +4,15 @@
 
 #include <string.h>
 
-walls walls_of_chain(const chain *c, const chain_spec *spec)
+walls walls_of_chain(const cull_descriptor *d, const chain_spec *spec)
 {
     static const char *const key = "backface"; // reserved by culler.h for this
-    const cull_descriptor *d = c->stages[0].plugin->descriptor;
-    const chain_stage_spec *select = &spec->stages[0];
+    const chain_stage_spec *first = &spec->stages[0];
     const char *value = "0";
     for (uint32_t i = 0; i < d->option_count; ++i)
         if (strcmp(d->options[i].key, key) == 0) value = d->options[i].fallback;
-    for (uint32_t i = 0; i < select->option_count; ++i)
-        if (strcmp(select->options[i].key, key) == 0) value = select->options[i].value;
+    for (uint32_t i = 0; i < first->option_count; ++i)
+        if (strcmp(first->options[i].key, key) == 0) value = first->options[i].value;
     return strcmp(value, "1") == 0 ? WALLS_FRONT_ONLY : WALLS_BOTH_SIDES;
 }
 

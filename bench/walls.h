@@ -9,7 +9,7 @@
 // The same on both sides of any comparison: a chain whose select has the option `backface` at 1 is judged by front walls only.
 typedef enum walls { WALLS_BOTH_SIDES, WALLS_FRONT_ONLY, WALLS_COUNT } walls;
 
-walls walls_of_chain(const chain *c, const chain_spec *spec);
+walls walls_of_chain(const cull_descriptor *select, const chain_spec *spec);
 // Sets the bit of every item and mover but of one-sided walls none of whose triangles faces the eye. words: (item_count +
 // mover_count + 31) / 32.
 void walls_in_front(const scene *s, const camera *c, uint32_t *item_bits);

@@ -29,7 +29,8 @@ typedef struct cull_scene cull_scene;
 typedef struct cull_scene_view cull_scene_view;
 
 // Results are cull_result: CULL_OK, CULL_ERR_MEMORY, or CULL_ERR_ZONE for bad data and names that are not there,
-// CULL_ERR_OPTION for a chain that is refused. Each failure gives one line to `log` first and changes nothing.
+// CULL_ERR_OPTION for a chain or camera that is
+// refused and a struct_size that is not this header's. Each failure gives one line to `log` first and changes nothing.
 typedef struct cull_scene_options {
     uint32_t struct_size;              // sizeof(cull_scene_options)
     uint32_t more_movers;              // room for movers that cull_scene_mover_add adds
@@ -52,7 +53,7 @@ typedef struct cull_scene_info {
     uint32_t mover_capacity;
     double min[3], max[3];
 } cull_scene_info;
-CULL_API void cull_scene_describe(const cull_scene *scene, cull_scene_info *out);
+CULL_API cull_result cull_scene_describe(const cull_scene *scene, cull_scene_info *out);
 CULL_API const char *cull_scene_zone_name(const cull_scene *scene, uint32_t zone); // as long as the scene; NULL: no such zone
 CULL_API const char *cull_scene_door_name(const cull_scene *scene, uint32_t door);
 CULL_API uint32_t cull_scene_find_zone(const cull_scene *scene, const char *name); // UINT32_MAX: none

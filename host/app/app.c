@@ -102,6 +102,17 @@ int parse_doors(const char *text, door_state *out)
     return 1;
 }
 
+int app_doors_parse(const char *text, app_doors *out)
+{
+    out->is_given = (uint32_t)parse_doors(text, &out->state);
+    return (int)out->is_given;
+}
+
+const door_state *app_doors_of(const app_doors *d)
+{
+    return d->is_given ? &d->state : NULL;
+}
+
 const char *scene_label(const char *path, arena *texts)
 {
     const char *slash = strrchr(path, '/');

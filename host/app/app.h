@@ -6,6 +6,8 @@
 #include "../core/chain.h"
 #include "../import/import.h"
 
+#define APP_VIEWS "FILE|auto:N|auto:walk:N|path:NAME" // what --views takes
+
 enum { EXIT_GOOD = 0, EXIT_CHECK_FAILED = 1, EXIT_USAGE = 2, EXIT_NO_GL = 3 };
 
 typedef int (*app_command)(int argc, char **argv); // argv[0] is "portcullis NAME"; returns the exit code
@@ -14,6 +16,8 @@ int command_plugins(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_bench(int argc, char **argv);
 int command_render(int argc, char **argv);
+int command_explain(int argc, char **argv);
+int command_view(int argc, char **argv);
 int command_generate(int argc, char **argv);
 
 // What every command that loads cullers holds.
@@ -41,6 +45,9 @@ typedef struct app_size { uint32_t width_px, height_px; } app_size;
 int parse_size(const char *text, app_size *out);                                     // "1280x720"; 0 when it is none
 int parse_count(const char *text, uint32_t least, uint32_t most, uint32_t *out);     // 0 when it is none
 int parse_doors(const char *text, door_state *out);                                  // "open", "shut"
+typedef struct app_doors { door_state state; uint32_t is_given; } app_doors; // zeroed: as files have them, open in maps
+int app_doors_parse(const char *text, app_doors *out);                               // "open", "shut"; 0 when it is neither
+const door_state *app_doors_of(const app_doors *d);                                  // NULL: at rest
 const char *scene_label(const char *path, arena *texts);                             // "a/b/e1m1.map" -> "e1m1"; NULL: no memory
 
 #endif

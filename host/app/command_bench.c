@@ -3,7 +3,7 @@
 #define _POSIX_C_SOURCE 200809L
 #include "../../bench/bench.h"
 #include "../core/file.h"
-#include "app.h"
+#include "chains.h"
 
 #include <argp.h>
 #include <errno.h>
@@ -12,29 +12,32 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { STRATEGIES_MOST = 64, ZONES_MOST = 256 };
-enum { KEY_VIEWS = 256, KEY_CULLER, KEY_ZONE, KEY_SIZE, KEY_REPEAT, KEY_NO_TRUTH, KEY_IDS, KEY_DOORS, KEY_IMAGES, KEY_LATENCY, KEY_JSON, KEY_PLUGIN };
+enum { STRATEGIES_MOST = 64, SWAP_VIEWS_MOST = 1000000 };
+enum { KEY_VIEWS = 256, KEY_CULLER, KEY_ZONE, KEY_SWAP, KEY_SIZE, KEY_REPEAT, KEY_NO_TRUTH, KEY_IDS, KEY_DOORS, KEY_IMAGES, KEY_LATENCY, KEY_JSON, KEY_PLUGIN };
 
 typedef struct arguments {
     const char *scene, *views, *images, *json;
-    const char *cullers[STRATEGIES_MOST], *zones[ZONES_MOST];
-    uint32_t culler_count, zone_count, repeat, latency;
+    const char *cullers[STRATEGIES_MOST];
+    zone_options zones;
+    uint32_t culler_count, swap, repeat, latency;
     app_size size;
-    door_state doors;
+    app_doors doors;
     bench_truth truth;
     bench_ids ids;
     app_plugin_files plugins;
 } arguments;
 
 static const struct argp_option options[] = {
-    {"views", KEY_VIEWS, "FILE|auto:N|auto:walk:N", 0, "the camera path; needed", 0},
-    {"culler", KEY_CULLER, "CHAIN", 0, "a strategy, such as frustum or octree[leaf=64]+occlusion; may stand several times", 0},
-    {"zone", KEY_ZONE, "NAME=CHAIN", 0, "in every strategy that zone takes this chain", 0},
+    {"views", KEY_VIEWS, APP_VIEWS, 0, "the camera path; needed", 0},
+    {"culler", KEY_CULLER, "CHAIN|scene", 0, "a strategy: this chain in all zones, such as frustum or octree[leaf=64]+occlusion; scene: what the scene file names per zone, "
+     "frustum where it names none (default); may stand several times", 0},
+    {"zone", KEY_ZONE, "NAME=CHAIN", 0, "in every strategy these zones take this chain; NAME may be a pattern such as cellar*; may stand several times", 0},
+    {"swap", KEY_SWAP, "N", 0, "a further strategy swap/N: every N views each zone goes on to its chain of the next --culler, neighbours one apart", 0},
     {"size", KEY_SIZE, "WxH", 0, "of the picture (default 1280x720)", 0},
     {"repeat", KEY_REPEAT, "N", 0, "passes over the path (default 3)", 0},
     {"no-truth", KEY_NO_TRUTH, NULL, 0, "time only: no pictures, no GL unless a culler tests", 0},
     {"ids", KEY_IDS, NULL, 0, "writing the id of every drawn item counts as culling", 0},
-    {"doors", KEY_DOORS, "open|shut", 0, "how doors stand (default open)", 0},
+    {"doors", KEY_DOORS, "open|shut", 0, "how doors stand (default: open, but for those that a scene file has shut)", 0},
     {"images", KEY_IMAGES, "DIR", 0, "write a picture of each strategy, and of its worst view", 0},
     {"query-latency", KEY_LATENCY, "L", 0, "an answer is readable L steps later (default 0)", 0},
     {"json", KEY_JSON, "FILE|-", 0, "results in Google Benchmark's shape", 0},
@@ -48,7 +51,8 @@ static void parse_numbers(int key, const char *text, struct argp_state *state)
     if (key == KEY_SIZE && !parse_size(text, &a->size)) argp_error(state, "--size takes WxH of 1 to 8192, not '%s'", text);
     if (key == KEY_REPEAT && !parse_count(text, 1, 10000, &a->repeat)) argp_error(state, "--repeat takes 1 to 10000, not '%s'", text);
     if (key == KEY_LATENCY && !parse_count(text, 0, 64, &a->latency)) argp_error(state, "--query-latency takes 0 to 64, not '%s'", text);
-    if (key == KEY_DOORS && !parse_doors(text, &a->doors)) argp_error(state, "--doors takes open or shut, not '%s'", text);
+    if (key == KEY_SWAP && !parse_count(text, 1, SWAP_VIEWS_MOST, &a->swap)) argp_error(state, "--swap takes 1 to 1000000 views, not '%s'", text);
+    if (key == KEY_DOORS && !app_doors_parse(text, &a->doors)) argp_error(state, "--doors takes open or shut, not '%s'", text);
 }
 
 static void add_text(const char **list, uint32_t *count, uint32_t most, const char *text, struct argp_state *state)
@@ -63,7 +67,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     switch (key) {
     case KEY_VIEWS: a->views = text; break;
     case KEY_CULLER: add_text(a->cullers, &a->culler_count, STRATEGIES_MOST, text, state); break;
-    case KEY_ZONE: add_text(a->zones, &a->zone_count, ZONES_MOST, text, state); break;
+    case KEY_ZONE: add_text(a->zones.texts, &a->zones.count, ZONE_OPTIONS_MOST, text, state); break;
     case KEY_PLUGIN: add_text(a->plugins.files, &a->plugins.count, APP_PLUGINS_MOST, text, state); break;
     case KEY_NO_TRUTH: a->truth = BENCH_NO_TRUTH; break;
     case KEY_IDS: a->ids = BENCH_IDS; break;
@@ -72,6 +76,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_SIZE:
     case KEY_REPEAT:
     case KEY_LATENCY:
+    case KEY_SWAP:
     case KEY_DOORS: parse_numbers(key, text, state); break;
     case ARGP_KEY_ARG:
         if (a->scene) argp_error(state, "one SCENE, not also '%s'", text);
@@ -79,45 +84,13 @@ static error_t parse(int key, char *text, struct argp_state *state)
         break;
     case ARGP_KEY_END:
         if (!a->scene) argp_error(state, "SCENE is missing");
-        if (!a->views) argp_error(state, "--views is missing; name a .views file, auto:N or auto:walk:N");
+        if (!a->views) argp_error(state, "--views is missing; name a .views file, auto:N, auto:walk:N or path:NAME");
+        if (a->swap && a->culler_count < 2) argp_error(state, "--swap needs two or more --culler to go through");
+        if (a->swap && a->culler_count == STRATEGIES_MOST) argp_error(state, "too many of one option");
         break;
     default: return ARGP_ERR_UNKNOWN;
     }
     return 0;
-}
-
-// The chain that the one zone takes when --zone names it, and the text that follows the strategy's name.
-typedef struct zone_override { const char *chain, *suffix; } zone_override;
-
-static result parse_zones(app *a, const arguments *q, zone_override *out)
-{
-    char suffix[4096] = "";
-    *out = (zone_override){NULL, ""};
-    for (uint32_t i = 0; i < q->zone_count; ++i) {
-        const char *equals = strchr(q->zones[i], '=');
-        const size_t length = equals ? (size_t)(equals - q->zones[i]) : 0;
-        if (!equals || length != strlen(a->scene->zones[0].name) || memcmp(q->zones[i], a->scene->zones[0].name, length) != 0)
-            return report_error(&a->report, NULL, 0, "--zone '%s': write NAME=CHAIN; the zones of this scene are: %s", q->zones[i], a->scene->zones[0].name);
-        if (out->chain) return report_error(&a->report, NULL, 0, "--zone '%s': that zone has a chain already; name it once", q->zones[i]);
-        out->chain = equals + 1;
-        if (strlen(suffix) + strlen(q->zones[i]) + 2 > sizeof suffix) return report_error(&a->report, NULL, 0, "--zone: too long");
-        strcat(strcat(suffix, ","), q->zones[i]);
-    }
-    out->suffix = arena_text(&a->texts, suffix, strlen(suffix));
-    return out->suffix ? RESULT_OK : report_no_memory(&a->report, NULL);
-}
-
-static result parse_strategy(app *a, const char *culler, const zone_override *zones, bench_strategy_request *out)
-{
-    static const char *const of_scene = "frustum"; // scenes say no chain of their own yet
-    const char *name = culler ? culler : "scene", *text = zones->chain ? zones->chain : culler ? culler : of_scene;
-    chain_spec *spec = arena_push(&a->texts, 1, sizeof *spec);
-    char full[8192];
-    snprintf(full, sizeof full, "%s%s", name, zones->suffix);
-    out->name = arena_text(&a->texts, full, strlen(full));
-    if (!spec || !out->name) return report_no_memory(&a->report, NULL);
-    out->spec = spec;
-    return chain_parse(text, &a->texts, &a->report, spec);
 }
 
 static void print_text(const bench_text *text, FILE *to)
@@ -169,16 +142,26 @@ static uint32_t tell_failures(app *a, const arguments *q, const bench_result *b)
     return failed;
 }
 
+static result make_strategies(app *a, const arguments *q, bench_strategy_request *out, uint32_t *out_count)
+{
+    chain_book book = {0};
+    const uint32_t count = q->culler_count ? q->culler_count : 1;
+    result done = chain_book_open(a, &q->zones, &book);
+    for (uint32_t i = 0; i < count && done == RESULT_OK; ++i) done = chain_book_strategy(&book, q->culler_count ? q->cullers[i] : NULL, &out[i]);
+    if (done == RESULT_OK && q->swap) done = chain_book_swap(&book, out, count, q->swap, &out[count]);
+    chain_book_close(&book);
+    *out_count = count + (q->swap > 0);
+    return done;
+}
+
 static result run_bench(app *a, const arguments *q, const camera_path *path, uint32_t *failed)
 {
     bench_strategy_request strategies[STRATEGIES_MOST];
-    zone_override zones;
-    const uint32_t count = q->culler_count ? q->culler_count : 1;
-    result done = parse_zones(a, q, &zones);
-    for (uint32_t i = 0; i < count && done == RESULT_OK; ++i) done = parse_strategy(a, q->culler_count ? q->cullers[i] : NULL, &zones, &strategies[i]);
+    uint32_t count = 0;
+    result done = make_strategies(a, q, strategies, &count);
     if (done != RESULT_OK) return done;
     if (q->images && mkdir(q->images, 0777) != 0 && errno != EEXIST) return report_error(&a->report, q->images, 0, "cannot make the folder: %s", strerror(errno));
-    const bench_request bench = {.scene = a->scene, .path = path, .strategies = strategies, .plugins = a->plugins, .services = &a->services,
+    const bench_request bench = {.scene = a->scene, .path = path, .strategies = strategies, .doors = app_doors_of(&q->doors), .plugins = a->plugins, .services = &a->services,
                                  .strategy_count = count, .width_px = q->size.width_px, .height_px = q->size.height_px, .repeat = q->repeat,
                                  .query_latency = q->latency, .truth = q->truth, .ids = q->ids, .images = q->images};
     const bench_labels labels = {scene_label(q->scene, &a->texts), path->name};
@@ -193,24 +176,10 @@ static result run_bench(app *a, const arguments *q, const camera_path *path, uin
     return done;
 }
 
-static result check_chain(app *a, const char *text)
-{
-    chain_spec spec;
-    const cull_plugin *plugin;
-    result done = chain_parse(text, &a->texts, &a->report, &spec);
-    for (uint32_t i = 0; i < spec.stage_count && done == RESULT_OK; ++i) done = loader_find(a->plugins, spec.stages[i].id, &a->report, &plugin);
-    return done;
-}
-
 // What can be known before the scene is read is told before it.
 static result check_early(app *a, const arguments *q)
 {
-    result done = RESULT_OK;
-    for (uint32_t i = 0; i < q->culler_count && done == RESULT_OK && !q->zone_count; ++i) done = check_chain(a, q->cullers[i]);
-    for (uint32_t i = 0; i < q->zone_count && done == RESULT_OK; ++i) {
-        const char *equals = strchr(q->zones[i], '=');
-        if (equals) done = check_chain(a, equals + 1);
-    }
+    result done = chains_check(a, q->cullers, q->culler_count, &q->zones);
     if (done == RESULT_OK && q->json && strcmp(q->json, "-") != 0) done = file_can_write(q->json, &a->report);
     return done;
 }
@@ -218,12 +187,12 @@ static result check_early(app *a, const arguments *q)
 int command_bench(int argc, char **argv)
 {
     static const struct argp parser = {options, parse, "SCENE", "Measures strategies on a scene and camera path against the truth.", NULL, NULL, NULL};
-    arguments q = {.repeat = 3, .size = {1280, 720}, .doors = DOORS_OPEN, .truth = BENCH_TRUTH, .ids = BENCH_RUNS};
+    arguments q = {.repeat = 3, .size = {1280, 720}, .truth = BENCH_TRUTH, .ids = BENCH_RUNS};
     if (argp_parse(&parser, argc, argv, 0, NULL, &q) != 0) return EXIT_USAGE;
     app a;
     camera_path path = {0};
     uint32_t failed = 0;
-    const import_options import = {.doors = q.doors};
+    const import_options import = {.doors = q.doors.state};
     result done = app_open(&a, &q.plugins);
     if (done == RESULT_OK) done = check_early(&a, &q);
     if (done == RESULT_OK) done = import_scene(q.scene, &import, a.memory, &a.report, &a.scene);

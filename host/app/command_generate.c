@@ -12,7 +12,7 @@ typedef struct arguments {
 } arguments;
 
 static const struct argp_option options[] = {
-    {"size", 'n', "N", 0, "boxes for city and swarm, rooms for rooms", 0},
+    {"size", 'n', "N", 0, "boxes for city and swarm, rooms for rooms and maze", 0},
     {"seed", 's', "S", 0, "another seed, another scene (default 1)", 0},
     {"output", 'o', "FILE", 0, "where to; needed", 0},
     {0},
@@ -43,7 +43,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
 
 int command_generate(int argc, char **argv)
 {
-    static const struct argp parser = {options, parse, "KIND", "Writes a seeded scene. KIND: " GENERATE_KINDS ".", NULL, NULL, NULL};
+    static const char about[] = "Writes a seeded scene. KIND: " GENERATE_KINDS ". maze, house and flagship, and rooms with -o FILE.json, "
+                                "have zones: they write FILE.json and FILE.obj beside it.";
+    static const struct argp parser = {options, parse, "KIND", about, NULL, NULL, NULL};
     arguments q = {.size = GENERATE_SIZE_OF_KIND, .seed = GENERATE_SEED_OF_KIND};
     if (argp_parse(&parser, argc, argv, 0, NULL, &q) != 0) return EXIT_USAGE;
     report r = report_to_stderr();

@@ -2,28 +2,31 @@
 // SPDX-License-Identifier: MIT
 #include "../../bench/images.h"
 #include "../core/file.h"
-#include "app.h"
+#include "chains.h"
 
 #include <argp.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { KEY_VIEWS = 256, KEY_VIEW, KEY_CULLER, KEY_MODE, KEY_DOORS, KEY_SIZE, KEY_PLUGIN };
+enum { KEY_VIEWS = 256, KEY_VIEW, KEY_CULLER, KEY_ZONE, KEY_MODE, KEY_SCISSOR, KEY_DOORS, KEY_SIZE, KEY_PLUGIN };
 
 typedef struct arguments {
     const char *scene, *views, *culler, *out;
     picture_request picture;
     app_size size;
-    door_state doors;
+    app_doors doors;
+    zone_options zones;
     app_plugin_files plugins;
 } arguments;
 
 static const struct argp_option options[] = {
-    {"views", KEY_VIEWS, "FILE|auto:N|auto:walk:N", 0, "the camera path; needed", 0},
+    {"views", KEY_VIEWS, APP_VIEWS, 0, "the camera path; needed", 0},
     {"view", KEY_VIEW, "I", 0, "which of its views, from 0 (default 0)", 0},
-    {"culler", KEY_CULLER, "CHAIN", 0, "what culls (default none: all is drawn)", 0},
+    {"culler", KEY_CULLER, "CHAIN|scene", 0, "what culls (default none: all of each zone that is reached); scene: what the scene file names", 0},
+    {"zone", KEY_ZONE, "NAME=CHAIN", 0, "these zones take this chain; NAME may be a pattern such as cellar*; may stand several times", 0},
     {"mode", KEY_MODE, "shaded|items|zones|depth|overdraw|error", 0, "default shaded; error: missed pixels in magenta", 0},
-    {"doors", KEY_DOORS, "open|shut", 0, "how doors stand (default open)", 0},
+    {"scissor", KEY_SCISSOR, NULL, 0, "cut what a zone draws to the rectangle that it is seen through", 0},
+    {"doors", KEY_DOORS, "open|shut", 0, "how doors stand (default: open, but for those that a scene file has shut)", 0},
     {"size", KEY_SIZE, "WxH", 0, "of the picture (default 1280x720)", 0},
     {"plugin", KEY_PLUGIN, "FILE", 0, "look at this library first", 0},
     {"output", 'o', "FILE.png", 0, "where to; needed", 0},
@@ -62,8 +65,13 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_MODE:
         if (!parse_mode(text, &a->picture)) argp_error(state, "--mode takes shaded, items, zones, depth, overdraw or error, not '%s'", text);
         break;
+    case KEY_ZONE:
+        if (a->zones.count == ZONE_OPTIONS_MOST) argp_error(state, "too many of one option");
+        a->zones.texts[a->zones.count++] = text;
+        break;
+    case KEY_SCISSOR: a->picture.scissor = SCISSOR_ZONES; break;
     case KEY_DOORS:
-        if (!parse_doors(text, &a->doors)) argp_error(state, "--doors takes open or shut, not '%s'", text);
+        if (!app_doors_parse(text, &a->doors)) argp_error(state, "--doors takes open or shut, not '%s'", text);
         break;
     case KEY_SIZE:
         if (!parse_size(text, &a->size)) argp_error(state, "--size takes WxH of 1 to 8192, not '%s'", text);
@@ -80,7 +88,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     return 0;
 }
 
-static result draw(app *a, const arguments *q, const bench_request *bench, const chain_spec *spec, renderer *g)
+static result draw(app *a, const arguments *q, const bench_request *bench, renderer *g)
 {
     strategy s = {0};
     truth t = {0};
@@ -88,7 +96,7 @@ static result draw(app *a, const arguments *q, const bench_request *bench, const
     uint64_t missed = 0;
     uint8_t *rgba = memory_alloc(a->memory, bytes, 1);
     result done = rgba ? renderer_upload(g, a->scene, &a->report) : report_no_memory(&a->report, NULL);
-    if (done == RESULT_OK) done = strategy_open(bench, spec, g, &a->report, &s);
+    if (done == RESULT_OK) done = strategy_open(bench, bench->strategies, g, &a->report, &s);
     const truth_request request = {a->scene, q->size.width_px, q->size.height_px, s.walls};
     if (done == RESULT_OK && q->picture.kind == PICTURE_ERROR) done = truth_open(&request, a->memory, &a->report, &t);
     if (done == RESULT_OK) done = picture_of(&s, &t, &q->picture, &a->report, rgba, &missed);
@@ -103,16 +111,18 @@ static result draw(app *a, const arguments *q, const bench_request *bench, const
 static result run_render(app *a, const arguments *q, const camera_path *path)
 {
     if (q->picture.view >= path->count) return report_error(&a->report, NULL, 0, "--view %u: the path has %u views, counted from 0", q->picture.view, path->count);
-    chain_spec *spec = arena_push(&a->texts, 1, sizeof *spec);
-    if (!spec) return report_no_memory(&a->report, NULL);
-    result done = chain_parse(q->culler, &a->texts, &a->report, spec);
+    chain_book book = {0};
+    bench_strategy_request strategy = {0};
+    result done = chain_book_open(a, &q->zones, &book);
+    if (done == RESULT_OK) done = chain_book_strategy(&book, q->culler, &strategy);
+    chain_book_close(&book);
     if (done != RESULT_OK) return done;
-    const bench_request bench = {.scene = a->scene, .path = path, .plugins = a->plugins, .services = &a->services, .repeat = 1,
+    const bench_request bench = {.scene = a->scene, .path = path, .strategies = &strategy, .strategy_count = 1, .doors = app_doors_of(&q->doors), .plugins = a->plugins, .services = &a->services, .repeat = 1,
                                  .width_px = q->size.width_px, .height_px = q->size.height_px, .truth = BENCH_NO_TRUTH};
     const renderer_options options_of_gl = {.target = RENDERER_HEADLESS, .width_px = q->size.width_px, .height_px = q->size.height_px};
     renderer *g = NULL;
     done = renderer_open(&options_of_gl, a->memory, &a->report, &g);
-    if (done == RESULT_OK) done = draw(a, q, &bench, spec, g);
+    if (done == RESULT_OK) done = draw(a, q, &bench, g);
     renderer_close(g);
     return done;
 }
@@ -120,13 +130,14 @@ static result run_render(app *a, const arguments *q, const camera_path *path)
 int command_render(int argc, char **argv)
 {
     static const struct argp parser = {options, parse, "SCENE", "Draws one view of a scene to a PNG file.", NULL, NULL, NULL};
-    arguments q = {.culler = "none", .size = {1280, 720}, .doors = DOORS_OPEN, .picture = {.mode = RENDER_SHADED}};
+    arguments q = {.culler = "none", .size = {1280, 720}, .picture = {.mode = RENDER_SHADED}};
     if (argp_parse(&parser, argc, argv, 0, NULL, &q) != 0) return EXIT_USAGE;
     app a;
     camera_path path = {0};
-    const import_options import = {.doors = q.doors};
+    const import_options import = {.doors = q.doors.state};
     result done = app_open(&a, &q.plugins);
     if (done == RESULT_OK) done = file_can_write(q.out, &a.report);
+    if (done == RESULT_OK) done = chains_check(&a, &q.culler, 1, &q.zones);
     if (done == RESULT_OK) done = import_scene(q.scene, &import, a.memory, &a.report, &a.scene);
     if (done == RESULT_OK) done = camera_path_load(q.views, a.scene, (double)q.size.width_px / q.size.height_px, a.memory, &a.report, &path);
     if (done == RESULT_OK) done = run_render(&a, &q, &path);

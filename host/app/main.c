@@ -23,6 +23,8 @@ static const command commands[] = {
     {"info", "portcullis info", "what a scene holds", command_info},
     {"bench", "portcullis bench", "measure cullers on a scene and camera path against the truth", command_bench},
     {"render", "portcullis render", "draw one view to a PNG", command_render},
+    {"explain", "portcullis explain", "why one item was drawn or not in one view", command_explain},
+    {"view", "portcullis view", "fly through a scene in a window", command_view},
     {"generate", "portcullis generate", "write a seeded scene: city, swarm, rooms, demo", command_generate},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };

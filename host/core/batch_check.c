@@ -45,8 +45,10 @@ static const char *runs_fault(const viewer *v, const cull_batch *batch, batch_ch
 
 static const char *repeat_fault(viewer *v, const cull_batch *batch, const batch_check *check)
 {
-    uint64_t *seen = v->seen.items;
-    if (check->runs == 0) memset(seen, 0, v->seen.size);
+    const cull_zone *zone = &v->chain->zone;
+    const size_t bytes = ((size_t)zone->item_count + zone->mover_capacity + 63) / 64 * sizeof(uint64_t);
+    uint64_t *seen = v->seen.size && check->stage == v->last ? v->seen.items : list_tail(&v->room->seen, bytes);
+    if (check->runs == 0) memset(seen, 0, bytes);
     for (uint32_t r = check->runs; r < batch->run_count; ++r)
         for (uint32_t i = batch->runs[r].first; i < batch->runs[r].first + batch->runs[r].count; ++i) {
             if (seen[i / 64] >> (i % 64) & 1) return "an item given twice";
@@ -83,7 +85,7 @@ static const char *lent_runs_fault(const viewer *v, const cull_run *runs, uint32
 // Captures run in order: one may be composed of what those before it fill, marked as they are checked.
 static int is_filled(const viewer *v, uint32_t slot)
 {
-    const uint8_t *marks = v->slot_marks.items;
+    const uint8_t *marks = v->room->slot_marks.items;
     return v->slots[slot] || marks[slot];
 }
 
@@ -118,7 +120,7 @@ static const char *picture_fault(const viewer *v, uint32_t slot_count, const cul
 // Captures first: what they fill the pictures may show.
 static const char *pictures_fault(viewer *v, uint32_t slot_count, const cull_batch *batch, const batch_check *check)
 {
-    uint8_t *marks = v->slot_marks.items;
+    uint8_t *marks = v->room->slot_marks.items;
     const char *fault = NULL;
     if (!batch->capture_count && batch->picture_count == check->pictures) return NULL;
     memset(marks, 0, v->slot_count);

@@ -4,7 +4,7 @@
 
 const cull_plugin *const *builtin_plugins(uint32_t *count)
 {
-    static const cull_plugin *const plugins[] = {&builtin_none, &builtin_brute};
+    static const cull_plugin *const plugins[] = {&builtin_none, &builtin_brute, &builtin_flood};
     *count = (uint32_t)(sizeof plugins / sizeof plugins[0]);
     return plugins;
 }

@@ -14,27 +14,11 @@ enum { LIST_MOST = 1 << 28 };                             // and so with every c
 static double cpu_ms(void)
 {
     struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
 // ---- The zone as plugins see it ----
-
-static result zone_of_scene(chain *c)
-{
-    const scene *s = c->scene;
-    cull_item *items = arena_push(&c->memory, s->item_count, sizeof *items);
-    if (!items) return RESULT_NO_MEMORY;
-    for (uint32_t i = 0; i < s->item_count; ++i) {
-        const scene_item *from = &s->items[i];
-        items[i] = (cull_item){from->first_index, from->index_count, from->polygon_count, from->material, from->flags, 0};
-    }
-    c->zone = (cull_zone){.items = items, .boxes = s->boxes, .positions = s->positions, .indices = s->indices, .walls = s->walls,
-                          .wall_vertices = s->wall_vertices, .planes = s->planes, .box = s->whole.box, .radius = s->whole.radius,
-                          .item_count = s->item_count, .position_count = s->position_count, .index_count = s->index_count,
-                          .wall_vertex_count = s->wall_vertex_count, .plane_count = s->plane_count, .mover_capacity = s->mover_count};
-    return RESULT_OK;
-}
 
 static const float *floats_in_order(chain *c, const float *from)
 {
@@ -167,18 +151,36 @@ static result slots_are_free(const chain *c, uint32_t place, report *r)
     return RESULT_OK;
 }
 
+static void loading_begins(const chain_request *q)
+{
+    if (q->loading) pthread_mutex_lock(q->loading);
+}
+
+static void loading_ends(const chain_request *q)
+{
+    if (q->loading) pthread_mutex_unlock(q->loading);
+}
+
+static cull_result stage_create(chain_stage *stage, const char *const *values, const chain_request *q)
+{
+    cull_culler *made = NULL; // not the stage's own: what a failed create leaves there is nothing to destroy
+    loading_begins(q);
+    const cull_result code = stage->plugin->create(&q->services->host, values, &made);
+    loading_ends(q);
+    if (code == CULL_OK) stage->culler = made;
+    return code;
+}
+
 static result stage_build(chain *c, uint32_t place, const chain_request *q, report *r)
 {
     chain_stage *stage = &c->stages[place];
     const char *values[256];
     result done = option_values(stage->plugin->descriptor, &q->spec->stages[place], r, values);
     if (done != RESULT_OK) return done;
-    cull_culler *made = NULL; // not the stage's own: what a failed create leaves there is nothing to destroy
-    cull_result code = stage->plugin->create(&q->services->host, values, &made);
-    if (code == CULL_OK) stage->culler = made;
-    if (!stage->culler) return tell_failure(code != CULL_OK ? code : CULL_ERR_ZONE, stage, "create an index for", r);
+    const cull_result created = stage_create(stage, values, q);
+    if (!stage->culler) return tell_failure(created != CULL_OK ? created : CULL_ERR_ZONE, stage, "create an index for", r);
     const cull_zone *zone = place == 0 ? &c->zone : &c->ordered_zone;
-    code = stage->plugin->build(stage->culler, zone, c->hierarchy, &stage->built); // the first is lent none: it is not taken yet
+    const cull_result code = stage->plugin->build(stage->culler, zone, c->hierarchy, &stage->built); // the first is lent none: it is not taken yet
     if (code != CULL_OK) return tell_failure(code, stage, "build", r);
     done = built_is_sound(stage, c->hierarchy, r);
     if (done == RESULT_OK) done = slots_are_free(c, place, r);
@@ -196,16 +198,23 @@ static void chain_sum_up(chain *c)
     }
 }
 
-static result chain_fill(chain *c, const chain_request *q, report *r)
+static result find_plugins(chain *c, const chain_request *q, report *r)
 {
     uint32_t crossers = 0;
-    c->stage_count = q->spec->stage_count;
-    for (uint32_t i = 0; i < c->stage_count; ++i) {
-        result done = loader_find(q->plugins, q->spec->stages[i].id, r, &c->stages[i].plugin);
+    result done = RESULT_OK;
+    loading_begins(q);
+    for (uint32_t i = 0; i < c->stage_count && done == RESULT_OK; ++i) {
+        done = loader_find(q->plugins, q->spec->stages[i].id, r, &c->stages[i].plugin);
         if (done == RESULT_OK) done = stage_role_of(c->stages[i].plugin, i, &crossers, r, &c->stages[i].role);
-        if (done != RESULT_OK) return done;
     }
-    if (zone_of_scene(c) != RESULT_OK) return report_no_memory(r, NULL);
+    loading_ends(q);
+    return done;
+}
+
+static result chain_fill(chain *c, const chain_request *q, report *r)
+{
+    const result found = find_plugins(c, q, r);
+    if (found != RESULT_OK) return found;
     const double start = cpu_ms();
     for (uint32_t i = 0; i < c->stage_count; ++i) {
         const result done = stage_build(c, i, q, r);
@@ -216,13 +225,20 @@ static result chain_fill(chain *c, const chain_request *q, report *r)
     return RESULT_OK;
 }
 
+static size_t chain_bytes(uint32_t stage_count)
+{
+    return sizeof(chain) + stage_count * sizeof(chain_stage);
+}
+
 result chain_build(const chain_request *q, report *r, chain **out)
 {
     const allocator *memory = q->services->memory;
-    chain *c = memory_alloc_zeroed(memory, 1, sizeof *c);
+    chain *c = memory_alloc_zeroed(memory, 1, chain_bytes(q->spec->stage_count));
     if (!c) return report_no_memory(r, NULL);
+    c->stage_count = q->spec->stage_count;
     c->memory = arena_make(memory);
-    c->scene = q->scene;
+    c->data = q->zone;
+    c->zone = q->zone->zone;
     const result done = chain_fill(c, q, r);
     if (done != RESULT_OK) {
         chain_close(c);
@@ -239,5 +255,5 @@ void chain_close(chain *c)
         if (c->stages[i].culler) c->stages[i].plugin->destroy(c->stages[i].culler);
     const allocator *memory = c->memory.memory;
     arena_free(&c->memory);
-    memory_free(memory, c, 1, sizeof *c);
+    memory_free(memory, c, 1, chain_bytes(c->stage_count));
 }

@@ -1,12 +1,14 @@
 // Chains: a zone's cullers in the order written, such as `octree[leaf=64]+occlusion`, built on the zone's geometry.
 // SPDX-License-Identifier: MIT
-// Invariant: a built chain is constant; everything that changes in a frame lives in a viewer (frame.h).
+// Invariant: a built chain is constant; everything that changes in a frame lives in a viewer (viewer.h).
 #ifndef PORTCULLIS_HOST_CHAIN_H
 #define PORTCULLIS_HOST_CHAIN_H
 
 #include "host.h"
 #include "loader.h"
-#include "scene.h"
+#include "zone_data.h"
+
+#include <pthread.h>
 
 enum { CHAIN_STAGES_MOST = 8, CHAIN_OPTIONS_MOST = 32 };
 
@@ -34,10 +36,9 @@ typedef struct chain_stage {
 } chain_stage;
 
 typedef struct chain {
-    chain_stage stages[CHAIN_STAGES_MOST];
     uint32_t stage_count;
-    const scene *scene;
-    const uint32_t *order;  // order[place] = global item id; NULL: the same
+    const zone_data *data;
+    const uint32_t *order;  // order[place] = place in the zone data; NULL: the same
     cull_zone zone;         // as lent to the select
     cull_zone ordered_zone; // as lent to the stages behind it; the same where order is NULL
     const cull_hierarchy *hierarchy; // that the select lends, checked; NULL: it has none, or nobody stands behind it
@@ -46,16 +47,19 @@ typedef struct chain {
     double build_ms;        // CPU time
     size_t index_bytes;
     arena memory;
+    chain_stage stages[]; // stage_count
 } chain;
 
 typedef struct chain_request {
     const chain_spec *spec;
-    const scene *scene;
+    const zone_data *zone;
     loader *plugins;
     const host_services *services;
+    pthread_mutex_t *loading; // held while libraries are looked for and cullers created; NULL: nobody else does
 } chain_request;
 
-// [main] Everything is borrowed for the chain's life. On failure a line, and nothing is left.
+// [main; with `loading` any thread, and the services' allocator is asked from it] Everything but the spec is borrowed for
+// the chain's life. On failure a line, and nothing is left.
 result chain_build(const chain_request *q, report *r, chain **out);
 void chain_close(chain *c); // NULL is fine; no viewer of it may live
 

@@ -11,7 +11,7 @@
 
 enum {
     FLOW_ZONE_VOLUMES = 16,  // volumes of a zone before they merge to their screen rectangle
-    FLOW_CROSSINGS = 4096,   // of a view, before all merge
+    FLOW_CROSSINGS = 4096,   // volumes of a view that are not its whole frustum, before all that come merge
 };
 
 // Who narrows volumes. NULL cross, or a zone without crosser (it answers CULL_CROSS_SAME): the flood.
@@ -33,7 +33,7 @@ typedef struct flow_volume {
     cull_volume volume;   // planes relative to the zone's origin, guarded; they live until the next run
     uint32_t zone;
     uint32_t way;         // 2 * portal + side that it came in through, as of the zone that it came from; SCENE_NONE: started here, or merged
-    uint32_t parent;      // in flow_result.volumes; SCENE_NONE: started here, or merged
+    uint32_t parent;      // in flow_result.volumes (what took its place where it merged); SCENE_NONE: started here, or merged
     float rectangle[4];   // of the picture that it covers: least x, least y, greatest x, greatest y, in -1 .. 1; whole where it is not known
 } flow_volume;
 
@@ -46,11 +46,11 @@ typedef struct flow_zone {
 typedef struct flow_result {
     const flow_zone *zones; // near to far, each once; stray zones last
     const flow_volume *volumes;
-    const uint32_t *by_zone; // volume numbers, zone by zone
+    const uint32_t *by_zone; // volume numbers, zone by zone; volumes that gave way are in neither
     uint32_t zone_count, volume_count;
     uint32_t crossings;     // portals tried
     uint32_t portal_merges; // volumes that gave way to a rectangle
-    uint32_t limits_hit;    // narrowings given up for want of planes or room
+    uint32_t limits_hit;    // narrowings given up for want of room for planes, or as the crosser wrote nonsense
     uint32_t is_everything; // the eye was in no zone: all zones are there, seen whole
 } flow_result;
 
@@ -70,7 +70,7 @@ typedef enum flow_fate {
     FLOW_CROSSED,   // it did
     FLOW_SHUT,      // its door is shut
     FLOW_BEHIND,    // the eye is behind it
-    FLOW_OUTSIDE,   // no volume of the zone touches it
+    FLOW_OUTSIDE,   // no volume of the zone touches it, or the crosser saw nothing behind it
     FLOW_UNREACHED, // the zone itself was not reached
 } flow_fate;
 flow_fate flow_fate_of(const flow *f, const flow_request *q, uint32_t way); // way: 2 * portal + side, side: the zone that is left

@@ -11,12 +11,18 @@ typedef struct graph graph;
 result graph_open(const scene *s, const allocator *memory, graph **out); // the scene is borrowed
 void graph_close(graph *g); // NULL is fine
 
-// Zones that reach to `distance` metres or nearer of the point: a hull of the zone is that near, and no hull of a zone in
-// it holds the point deeper than that. Zones everywhere too, never a stray zone. Each once, ascending; writes at most
+// Zones that reach to `distance` metres or nearer of the point: a hull of the zone is that near, and no hull of a zone
+// whose parent it is holds the point deeper than that. Zones everywhere too, never a stray zone. Each once, ascending; writes at most
 // `capacity`, returns how many there are.
 uint32_t graph_zones_at(const graph *g, const double p[3], double distance, uint32_t *zones, uint32_t capacity);
 // Zones that the box touches: a hull that it is not outside of (by one of the hull's planes or its bounds), and no hull
-// of a zone in it that holds the whole box in its inside. Borders count as touched.
+// of a zone whose parent it is that holds the whole box in its inside. Borders count as touched. The margins are those by
+// which scene_builder_finish lists items: 1 step of the scene outward to touch, 2 steps inward to be held.
 uint32_t graph_zones_of_box(const graph *g, const double min[3], const double max[3], uint32_t *zones, uint32_t capacity);
+// The same, but ends when there are more than `capacity`, below 2^32 - 1: returns more than that then, and which zones it
+// wrote is not said. What a box larger than the scene costs does not grow with the scene.
+uint32_t graph_few_zones_of_box(const graph *g, const double min[3], const double max[3], uint32_t *zones, uint32_t capacity);
+// Nodes on the longest way down a tree: what a look-up can cost for each zone that it finds, whatever the scene.
+uint32_t graph_depth(const graph *g);
 
 #endif

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MEMORY_ALIGN = 64, ARENA_BLOCK_BYTES = 64 * 1024 };
+enum { MEMORY_ALIGN = 64, ARENA_LEAST_BYTES = 1024, ARENA_MOST_BYTES = 64 * 1024 };
 
 struct arena_block {
     arena_block *next;
@@ -110,6 +110,13 @@ static size_t round_up(size_t size)
     return (size + MEMORY_ALIGN - 1) / MEMORY_ALIGN * MEMORY_ALIGN;
 }
 
+// Thousands of small arenas stay small, a large one takes few blocks.
+static size_t next_block_bytes(const arena_block *last)
+{
+    if (!last) return ARENA_LEAST_BYTES;
+    return last->size < ARENA_MOST_BYTES / 2 ? last->size * 2 : ARENA_MOST_BYTES;
+}
+
 void *arena_push(arena *a, size_t count, size_t item_size)
 {
     const size_t size = size_of(count, item_size);
@@ -118,7 +125,7 @@ void *arena_push(arena *a, size_t count, size_t item_size)
     arena_block *block = a->blocks;
     if (!block || block->size - block->used < need) {
         const size_t head = round_up(sizeof(arena_block));
-        const size_t whole = need + head > ARENA_BLOCK_BYTES ? need + head : ARENA_BLOCK_BYTES;
+        const size_t wanted = next_block_bytes(block), whole = need + head > wanted ? need + head : wanted;
         block = a->memory->alloc(a->memory->user, whole, MEMORY_ALIGN);
         if (!block) return NULL;
         *block = (arena_block){.next = a->blocks, .used = head, .size = whole};

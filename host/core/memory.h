@@ -33,7 +33,7 @@ void *buffer_push(buffer *b, size_t count); // `count` new items of undefined co
 void *buffer_append(buffer *b, const void *items, size_t count); // copies; NULL on failure
 void buffer_free(buffer *b);
 
-// Memory that goes all at once. Blocks of at least 64 KiB; nothing in it moves.
+// Memory that goes all at once. Blocks of 1 KiB, doubling to 64 KiB; nothing in it moves.
 typedef struct arena_block arena_block;
 typedef struct arena {
     arena_block *blocks;

@@ -1,7 +1,7 @@
 // Movers: boxes that the application moves, found by zone. A mover stands in every zone that its box touches.
 // SPDX-License-Identifier: MIT
-// Invariant: all memory is taken at open; a mover in more zones than MOVER_ZONES_MOST, or for which room ran out, stands
-// in the list `everywhere`, is looked at in every view, and is counted.
+// Invariant: all memory is taken at open, enough for every way to stand; a mover in more zones than MOVER_ZONES_MOST, or
+// in none, stands in the list `everywhere`, is looked at in every view, and is counted.
 #ifndef PORTCULLIS_HOST_MOVERS_H
 #define PORTCULLIS_HOST_MOVERS_H
 
@@ -17,9 +17,14 @@ typedef struct mover_block {
 } mover_block;
 
 typedef struct movers movers;
-typedef struct mover_counts { uint32_t live, everywhere, capacity; uint64_t moves, relocations; } mover_counts; // relocations: moves that changed zones
+typedef struct mover_counts {
+    uint32_t live, everywhere, capacity;
+    uint64_t moves, relocations; // relocations: moves that changed zones
+    uint64_t writes;             // boxes written to a zone's list, or moved within it to close a gap
+} mover_counts;
 
 typedef struct movers_request { const scene *scene; const graph *graph; uint32_t capacity; } movers_request;
+// Borrows both. At most about 400 bytes a mover, and a block for each zone.
 result movers_open(const movers_request *q, const allocator *memory, movers **out);
 void movers_close(movers *m); // NULL is fine
 

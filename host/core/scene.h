@@ -43,6 +43,7 @@ typedef struct scene_mover { // item scene.item_count + its place in scene.mover
     const char *name;
     double open_offset[3];         // from shut to open, metres; already applied to the geometry when its door is open at rest
     double pivot[3];               // world: what it turns about
+    double axes[9];                // rows, orthonormal: turn_deg is about the columns, which are x, y, z but in a turned include
     uint32_t first_key, key_count; // its path, in scene.keys, by time; 0: it stays
     uint32_t door;                 // that moves it, or SCENE_NONE
     uint32_t loops;                // 1: behind the last key comes the first; 0: it stays there
@@ -60,7 +61,7 @@ typedef struct scene_door {
 } scene_door;
 
 // A convex body, world: inside where normal . p <= distance for its planes. A zone is the union of its hulls, less the
-// inside of the zones that lie in it.
+// inside of the zones that lie in it. An item touches a hull from 1 step outside of it on, and is held 2 steps inside.
 typedef struct scene_hull {
     uint32_t zone, first_plane, plane_count; // in scene.hull_planes
     double min[3], max[3];
@@ -120,7 +121,7 @@ typedef struct scene_solid_plane { double normal[3], distance; } scene_solid_pla
 typedef struct scene_extent {
     double origin[3]; // a multiple of 1 m
     cull_box box;     // of everything, movers too, relative to the origin
-    float radius;     // largest absolute coordinate
+    float radius;     // largest absolute coordinate, portals too
 } scene_extent;
 
 typedef struct scene {

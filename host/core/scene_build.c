@@ -30,6 +30,7 @@ result scene_builder_open(const allocator *memory, scene_builder **out)
     if (!b) return RESULT_NO_MEMORY;
     b->memory = memory;
     b->names = arena_make(memory);
+    b->everywhere = SCENE_NONE;
     b->positions = buffer_make(memory, 3 * sizeof(double));
     b->normals = buffer_make(memory, sizeof(uint32_t));
     b->texcoords = buffer_make(memory, 2 * sizeof(float));
@@ -45,6 +46,17 @@ result scene_builder_open(const allocator *memory, scene_builder **out)
     b->places = buffer_make(memory, sizeof(scene_place));
     b->solids = buffer_make(memory, sizeof(scene_solid));
     b->solid_planes = buffer_make(memory, sizeof(scene_solid_plane));
+    b->zones = buffer_make(memory, sizeof(scene_zone));
+    b->zone_slots = buffer_make(memory, sizeof(uint32_t));
+    b->hulls = buffer_make(memory, sizeof(scene_hull));
+    b->hull_planes = buffer_make(memory, sizeof(scene_solid_plane));
+    b->gates = buffer_make(memory, sizeof(builder_gate));
+    b->gate_points = buffer_make(memory, 3 * sizeof(double));
+    b->doors = buffer_make(memory, sizeof(scene_door));
+    b->keys = buffer_make(memory, sizeof(scene_key));
+    b->lights = buffer_make(memory, sizeof(scene_light));
+    b->paths = buffer_make(memory, sizeof(scene_camera_path));
+    b->cameras = buffer_make(memory, sizeof(camera));
     *out = b;
     return RESULT_OK;
 }
@@ -55,7 +67,9 @@ void scene_builder_close(scene_builder *b)
     stream_close(&b->statics);
     stream_close(&b->movers);
     buffer *const all[] = {&b->positions,  &b->normals,        &b->texcoords,  &b->vertex_materials, &b->walls,  &b->wall_vertices, &b->materials,
-                           &b->material_slots, &b->objects, &b->mover_list, &b->places, &b->solids, &b->solid_planes};
+                           &b->material_slots, &b->objects, &b->mover_list, &b->places, &b->solids, &b->solid_planes, &b->zones,
+                           &b->zone_slots, &b->hulls, &b->hull_planes, &b->gates, &b->gate_points, &b->doors, &b->keys, &b->lights,
+                           &b->paths, &b->cameras};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) buffer_free(all[i]);
     arena_free(&b->names);
     memory_free(b->memory, b, 1, sizeof *b);
@@ -125,9 +139,9 @@ result scene_builder_object(scene_builder *b, const char *name, size_t length, u
     return RESULT_OK;
 }
 
-static uint32_t snorm8x3(const float v[3])
+static uint32_t snorm8x3(const double v[3])
 {
-    const double length = sqrt((double)v[0] * v[0] + (double)v[1] * v[1] + (double)v[2] * v[2]);
+    const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     if (!(length > 0) || !isfinite(length)) return 0;
     uint32_t packed = 0;
     for (int i = 0; i < 3; ++i) packed |= ((uint32_t)(int32_t)lrint(v[i] / length * 127) & 0xff) << (8 * i);
@@ -138,17 +152,22 @@ result scene_builder_vertices(scene_builder *b, const builder_vertex *vertices, 
 {
     const size_t first = b->positions.count;
     if (material >= b->materials.count || count > UINT32_MAX || first > UINT32_MAX - count) return RESULT_BAD_INPUT;
-    for (size_t i = 0; i < count; ++i)
-        for (int k = 0; k < 3; ++k)
-            if (!isfinite(vertices[i].position[k])) return RESULT_BAD_INPUT;
+    for (size_t i = 0; i < count; ++i) {
+        double world[3];
+        builder_point(b, vertices[i].position, world);
+        if (!isfinite(world[0]) || !isfinite(world[1]) || !isfinite(world[2])) return RESULT_BAD_INPUT;
+    }
     double(*position)[3] = buffer_push(&b->positions, count);
     uint32_t *normal = position ? buffer_push(&b->normals, count) : NULL;
     float(*texcoord)[2] = normal ? buffer_push(&b->texcoords, count) : NULL;
     uint16_t *owner = texcoord ? buffer_push(&b->vertex_materials, count) : NULL;
     if (!owner) return RESULT_NO_MEMORY;
     for (size_t i = 0; i < count; ++i) {
-        memcpy(position[i], vertices[i].position, sizeof position[i]);
-        normal[i] = snorm8x3(vertices[i].normal);
+        const double n[3] = {(double)vertices[i].normal[0], (double)vertices[i].normal[1], (double)vertices[i].normal[2]};
+        double turned[3];
+        builder_point(b, vertices[i].position, position[i]);
+        builder_direction(b, n, turned);
+        normal[i] = snorm8x3(turned);
         texcoord[i][0] = vertices[i].texcoord[0];
         texcoord[i][1] = vertices[i].texcoord[1];
         owner[i] = (uint16_t)material;
@@ -197,40 +216,79 @@ static result stream_item(scene_builder *b, builder_stream *s, const builder_ite
 
 result scene_builder_item(scene_builder *b, const builder_item *item)
 {
+    const scene_solid_plane plane = builder_plane(b, &(scene_solid_plane){{item->plane[0], item->plane[1], item->plane[2]}, -item->plane[3]});
+    if (item->flags & CULL_ITEM_WALL && !isfinite(plane.distance)) return RESULT_BAD_INPUT;
     const result done = stream_item(b, &b->statics, item);
     if (done != RESULT_OK) return done;
     builder_wall *wall = buffer_push(&b->walls, 1);
     if (!wall) return RESULT_NO_MEMORY;
     const uint32_t loop_count = item->flags & CULL_ITEM_WALL ? item->loop_count : 0;
     *wall = (builder_wall){.first_vertex = (uint32_t)b->wall_vertices.count, .vertex_count = loop_count};
-    memcpy(wall->plane, item->plane, sizeof wall->plane);
+    memcpy(wall->plane, plane.normal, sizeof plane.normal);
+    wall->plane[3] = -plane.distance;
     b->wall_count += loop_count != 0;
     return loop_count && !buffer_append(&b->wall_vertices, item->loop, loop_count) ? RESULT_NO_MEMORY : RESULT_OK;
 }
 
+// Middle of the item's vertices' box, world.
+static void middle_of(const scene_builder *b, const builder_item *item, double out[3])
+{
+    const double(*positions)[3] = b->positions.items;
+    for (int k = 0; k < 3; ++k) {
+        double low = positions[item->indices[0]][k], high = low;
+        for (uint32_t i = 1; i < item->index_count; ++i) {
+            low = fmin(low, positions[item->indices[i]][k]);
+            high = fmax(high, positions[item->indices[i]][k]);
+        }
+        out[k] = low + (high - low) / 2;
+    }
+}
+
 result scene_builder_mover(scene_builder *b, const char *name, const double open_offset[3], const builder_item *item)
 {
+    double offset[3];
+    builder_offset(b, open_offset, offset);
+    if (!isfinite(offset[0]) || !isfinite(offset[1]) || !isfinite(offset[2])) return RESULT_BAD_INPUT;
     const result done = stream_item(b, &b->movers, item);
     if (done != RESULT_OK) return done;
     const char *copy = arena_text(&b->names, name, strlen(name));
     scene_mover *mover = copy ? buffer_push(&b->mover_list, 1) : NULL;
     if (!mover) return RESULT_NO_MEMORY;
-    *mover = (scene_mover){.name = copy};
-    memcpy(mover->open_offset, open_offset, sizeof mover->open_offset);
+    *mover = (scene_mover){.name = copy, .door = SCENE_NONE, .axes = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    memcpy(mover->open_offset, offset, sizeof offset);
+    middle_of(b, item, mover->pivot);
     return RESULT_OK;
 }
 
 result scene_builder_place(scene_builder *b, const scene_place *place)
 {
-    return buffer_append(&b->places, place, 1) ? RESULT_OK : RESULT_NO_MEMORY;
+    scene_place moved = *place;
+    builder_point(b, place->position, moved.position);
+    if (!isfinite(moved.position[0]) || !isfinite(moved.position[1]) || !isfinite(moved.position[2])) return RESULT_BAD_INPUT;
+    return buffer_append(&b->places, &moved, 1) ? RESULT_OK : RESULT_NO_MEMORY;
+}
+
+// Box of the turned box: as tight as the body only where the turn is by quarters.
+static void turn_box(const scene_builder *b, const double min[3], const double max[3], scene_solid *out)
+{
+    for (int corner = 0; corner < 8; ++corner) {
+        double p[3];
+        for (int k = 0; k < 3; ++k) p[k] = corner >> k & 1 ? max[k] : min[k];
+        builder_point(b, p, p);
+        for (int k = 0; k < 3; ++k) {
+            out->min[k] = corner ? fmin(out->min[k], p[k]) : p[k];
+            out->max[k] = corner ? fmax(out->max[k], p[k]) : p[k];
+        }
+    }
 }
 
 result scene_builder_solid(scene_builder *b, solid_kind kind, const scene_solid_plane *planes, uint32_t plane_count,
                            const double min[3], const double max[3])
 {
     scene_solid solid = {.first_plane = (uint32_t)b->solid_planes.count, .plane_count = plane_count, .kind = kind};
-    memcpy(solid.min, min, sizeof solid.min);
-    memcpy(solid.max, max, sizeof solid.max);
-    if (!buffer_append(&b->solid_planes, planes, plane_count)) return RESULT_NO_MEMORY;
+    turn_box(b, min, max, &solid);
+    scene_solid_plane *to = buffer_push(&b->solid_planes, plane_count);
+    if (!to) return RESULT_NO_MEMORY;
+    for (uint32_t p = 0; p < plane_count; ++p) to[p] = builder_plane(b, &planes[p]);
     return buffer_append(&b->solids, &solid, 1) ? RESULT_OK : RESULT_NO_MEMORY;
 }

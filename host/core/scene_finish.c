@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Invariant: every relative coordinate is a multiple of scene.step and exact in float, so no later sum of origin and
 // position depends on who computes it.
-#include "scene_builder.h"
+#include "scene_finish.h"
 
 #include <portcullis/box.h>
 
@@ -12,42 +12,33 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-static const double ORIGIN_GRID_M = 1.0;     // all zone origins are multiples of it: whole moves of a scene change nothing else
 static const double ZONE_RADIUS_MOST = 16384; // metres: float steps of 2^-10 m, just under 1 mm
 static const int STEP_LOG2_LEAST = -64;       // 5e-20 m: in a scene of no size the squares of coordinates stay in float
 static const double COORDINATE_MOST = 1e9;    // metres: beyond, doubles no longer hold a tenth of a micrometre
 enum { STEPS_LOG2 = 24 };                     // float's mantissa: coordinates up to 2^24 steps are exact
 
 // Rounds |v| < 2^51 to the nearest integer, ties to even: the sum has no bits below one. A library call each is slower.
-static double round_even(double v)
+double finish_round(double v)
 {
     const double shift = 6755399441055744.0; // 1.5 * 2^52
     return (v + shift) - shift;
 }
 
-// One allocation of the scene's arena, or a remembered failure.
-typedef struct finish {
-    scene_builder *b;
-    scene *s;
-    double low[3], high[3];
-    int failed;
-} finish;
-
-static void *take(finish *f, size_t count, size_t item_size)
+void *finish_take(finish *f, size_t count, size_t item_size)
 {
     void *memory = f->failed ? NULL : arena_push(&f->s->memory, count, item_size);
     if (!memory) f->failed = 1;
     return memory;
 }
 
-static void *take_copy(finish *f, const buffer *from)
+void *finish_copy(finish *f, const buffer *from)
 {
-    void *to = take(f, from->count, from->item_size);
+    void *to = finish_take(f, from->count, from->item_size);
     if (to && from->count) memcpy(to, from->items, from->count * from->item_size);
     return to;
 }
 
-static const char *take_text(finish *f, const char *text)
+const char *finish_text(finish *f, const char *text)
 {
     const char *copy = f->failed ? NULL : arena_text(&f->s->memory, text, strlen(text));
     if (!copy) f->failed = 1;
@@ -56,16 +47,24 @@ static const char *take_text(finish *f, const char *text)
 
 static void find_bounds(finish *f)
 {
-    const double(*p)[3] = f->b->positions.items;
+    const buffer *const all[] = {&f->b->positions, &f->b->gate_points};
     for (int k = 0; k < 3; ++k) {
         f->low[k] = INFINITY;
         f->high[k] = -INFINITY;
     }
-    for (size_t i = 0; i < f->b->positions.count; ++i)
-        for (int k = 0; k < 3; ++k) {
-            f->low[k] = p[i][k] < f->low[k] ? p[i][k] : f->low[k];
-            f->high[k] = p[i][k] > f->high[k] ? p[i][k] : f->high[k];
-        }
+    for (int a = 0; a < 2; ++a) {
+        const double(*p)[3] = all[a]->items;
+        for (size_t i = 0; i < all[a]->count; ++i)
+            for (int k = 0; k < 3; ++k) {
+                f->low[k] = p[i][k] < f->low[k] ? p[i][k] : f->low[k];
+                f->high[k] = p[i][k] > f->high[k] ? p[i][k] : f->high[k];
+            }
+    }
+}
+
+double finish_origin(double middle)
+{
+    return floor(middle + 0.5); // not to even: halves round alike wherever the scene lies
 }
 
 static result choose_origin(finish *f, const char *path, report *r)
@@ -76,7 +75,7 @@ static result choose_origin(finish *f, const char *path, report *r)
         if (f->low[k] < -COORDINATE_MOST || f->high[k] > COORDINATE_MOST)
             return report_error(r, path, 0, "a coordinate beyond 1e9 m; move the scene nearer to its origin");
         const double middle = (f->low[k] + f->high[k]) / 2;
-        s->whole.origin[k] = floor(middle / ORIGIN_GRID_M + 0.5) * ORIGIN_GRID_M; // not to even: halves round alike wherever the scene lies
+        s->whole.origin[k] = finish_origin(middle);
         radius = fmax(radius, fmax(f->high[k] - s->whole.origin[k], s->whole.origin[k] - f->low[k]));
     }
     if (radius > ZONE_RADIUS_MOST)
@@ -93,11 +92,11 @@ static void round_positions(finish *f)
     const double(*from)[3] = f->b->positions.items;
     const double steps = 1 / s->step;
     s->position_count = (uint32_t)f->b->positions.count;
-    s->positions = take(f, s->position_count, sizeof *s->positions);
+    s->positions = finish_take(f, s->position_count, sizeof *s->positions);
     if (f->failed) return;
     for (uint32_t i = 0; i < s->position_count; ++i) {
         double to[3];
-        for (int k = 0; k < 3; ++k) to[k] = round_even((from[i][k] - s->whole.origin[k]) * steps) * s->step + 0.0;
+        for (int k = 0; k < 3; ++k) to[k] = finish_round((from[i][k] - s->whole.origin[k]) * steps) * s->step + 0.0;
         s->positions[i] = (cull_vec3){(float)to[0], (float)to[1], (float)to[2]};
     }
 }
@@ -110,9 +109,9 @@ static void join_streams(finish *f)
     s->mover_count = (uint32_t)streams[1]->items.count;
     s->index_count = (uint32_t)(streams[0]->indices.count + streams[1]->indices.count);
     s->polygon_count = (uint32_t)(streams[0]->polygon_triangles.count + streams[1]->polygon_triangles.count);
-    s->items = take(f, s->item_count + s->mover_count, sizeof *s->items);
-    s->indices = take(f, s->index_count, sizeof *s->indices);
-    s->polygon_first_triangle = take(f, (size_t)s->polygon_count + 1, sizeof(uint32_t));
+    s->items = finish_take(f, s->item_count + s->mover_count, sizeof *s->items);
+    s->indices = finish_take(f, s->index_count, sizeof *s->indices);
+    s->polygon_first_triangle = finish_take(f, (size_t)s->polygon_count + 1, sizeof(uint32_t));
     if (f->failed) return;
     uint32_t item = 0, index = 0, polygon = 0, triangle = 0;
     for (int k = 0; k < 2; ++k) {
@@ -136,7 +135,7 @@ static void join_streams(finish *f)
 
 static float *take_floats(finish *f, size_t count)
 {
-    float *floats = take(f, count + CULL_PADDING, sizeof(float));
+    float *floats = finish_take(f, count + CULL_PADDING, sizeof(float));
     if (floats) memset(floats + count, 0, CULL_PADDING * sizeof(float));
     return floats;
 }
@@ -206,10 +205,10 @@ static void finish_walls(finish *f)
 {
     scene *s = f->s;
     if (!f->b->wall_count) return;
-    s->wall_vertices = take_copy(f, &f->b->wall_vertices);
+    s->wall_vertices = finish_copy(f, &f->b->wall_vertices);
     s->wall_vertex_count = (uint32_t)f->b->wall_vertices.count;
-    s->walls = take(f, s->item_count, sizeof *s->walls);
-    s->planes = take(f, f->b->wall_count, sizeof *s->planes);
+    s->walls = finish_take(f, s->item_count, sizeof *s->walls);
+    s->planes = finish_take(f, f->b->wall_count, sizeof *s->planes);
     size_t slot_count = 64;
     while (slot_count < (size_t)f->b->wall_count * 2) slot_count *= 2;
     plane_key *keys = memory_alloc(f->b->memory, f->b->wall_count, sizeof *keys);
@@ -224,15 +223,15 @@ static void finish_lists(finish *f, const char *path)
 {
     scene *s = f->s;
     const scene_builder *b = f->b;
-    s->path = take_text(f, path);
-    s->normals = take_copy(f, &b->normals);
-    s->vertex_materials = take_copy(f, &b->vertex_materials);
-    s->materials = take_copy(f, &b->materials);
-    s->objects = take_copy(f, &b->objects);
-    s->movers = take_copy(f, &b->mover_list);
-    s->places = take_copy(f, &b->places);
-    s->solids = take_copy(f, &b->solids);
-    s->solid_planes = take_copy(f, &b->solid_planes);
+    s->path = finish_text(f, path);
+    s->normals = finish_copy(f, &b->normals);
+    s->vertex_materials = finish_copy(f, &b->vertex_materials);
+    s->materials = finish_copy(f, &b->materials);
+    s->objects = finish_copy(f, &b->objects);
+    s->movers = finish_copy(f, &b->mover_list);
+    s->places = finish_copy(f, &b->places);
+    s->solids = finish_copy(f, &b->solids);
+    s->solid_planes = finish_copy(f, &b->solid_planes);
     s->material_count = (uint32_t)b->materials.count;
     s->object_count = (uint32_t)b->objects.count;
     s->place_count = (uint32_t)b->places.count;
@@ -241,12 +240,12 @@ static void finish_lists(finish *f, const char *path)
     s->is_map = b->is_map;
     uint32_t flags = 0;
     for (uint32_t i = 0; !f->failed && i < s->material_count; ++i) {
-        s->materials[i].name = take_text(f, s->materials[i].name);
+        s->materials[i].name = finish_text(f, s->materials[i].name);
         flags |= s->materials[i].flags;
     }
-    for (uint32_t i = 0; !f->failed && i < s->object_count; ++i) s->objects[i].name = take_text(f, s->objects[i].name);
-    for (uint32_t i = 0; !f->failed && i < s->mover_count; ++i) s->movers[i].name = take_text(f, s->movers[i].name);
-    if (flags & MATERIAL_CUT_OUT) s->texcoords = take_copy(f, &b->texcoords);
+    for (uint32_t i = 0; !f->failed && i < s->object_count; ++i) s->objects[i].name = finish_text(f, s->objects[i].name);
+    for (uint32_t i = 0; !f->failed && i < s->mover_count; ++i) s->movers[i].name = finish_text(f, s->movers[i].name);
+    if (flags & MATERIAL_CUT_OUT) s->texcoords = finish_copy(f, &b->texcoords);
 }
 
 static void finish_objects(scene *s)
@@ -290,7 +289,7 @@ static result fill(finish *f, const char *path, report *r)
     finish_objects(f->s);
     count_flat_triangles(f->s);
     f->s->hash = hash_of(f->s);
-    return RESULT_OK;
+    return finish_zones(f, path, r);
 }
 
 result scene_builder_finish(scene_builder *b, const char *path, report *r, scene **out)

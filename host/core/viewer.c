@@ -1,32 +1,102 @@
 // Viewers: opens the queries of a chain and sizes every list of a frame from what the cullers told after build.
 // SPDX-License-Identifier: MIT
-#define _POSIX_C_SOURCE 200809L
 #include "viewer.h"
 
 #include <string.h>
-#include <time.h>
 
 static uint32_t max_u32(uint32_t a, uint32_t b)
 {
     return a > b ? a : b;
 }
 
-static int list_take(list *l, const allocator *memory, size_t count, size_t item_size)
+static size_t max_size(size_t a, size_t b)
 {
-    *l = list_open(memory, count, item_size);
-    return l->items != NULL;
+    return a > b ? a : b;
 }
 
 // Which stage starts, which steps: the last filter that walks the hierarchy needs nothing of those before it.
-static void choose_stages(viewer *v)
+static void choose_stages(const chain *c, uint32_t *first, uint32_t *last)
 {
-    const chain *c = v->chain;
+    *first = *last = 0;
     for (uint32_t i = 1; i < c->stage_count; ++i) {
         if (c->stages[i].role != ROLE_FILTER) continue;
-        v->last = i;
-        if (c->stages[i].built.walks_hierarchy) v->first = i;
+        *last = i;
+        if (c->stages[i].built.walks_hierarchy) *first = i;
     }
 }
+
+static size_t seen_bytes(const chain *c)
+{
+    return ((size_t)c->zone.item_count + c->zone.mover_capacity + 63) / 64 * sizeof(uint64_t);
+}
+
+// ---- The room ----
+
+// Stages before the last may give no tests, and those that are not first no pictures: they learn it from the check of
+// what they wrote, so there has to be room for it.
+void viewer_room_size_add(viewer_room_size *size, const chain *c)
+{
+    uint32_t first, last;
+    choose_stages(c, &first, &last);
+    for (uint32_t i = 0; i < c->stage_count; ++i) {
+        const cull_built *b = &c->stages[i].built;
+        size->scratch = max_size(size->scratch, b->scratch_size);
+        size->slot_marks = max_size(size->slot_marks, b->slot_count);
+        if (i >= last) continue;
+        size->early_tests = max_size(size->early_tests, b->max_tests * sizeof(cull_test));
+        size->early_captures = max_size(size->early_captures, b->max_captures * sizeof(cull_capture));
+        size->early_pictures = max_size(size->early_pictures, b->max_pictures * sizeof(cull_picture));
+    }
+    size->seen = max_size(size->seen, seen_bytes(c));
+}
+
+static int grow_list(list *l, size_t before, size_t *now, const allocator *memory)
+{
+    if (*now <= before && l->items) {
+        *now = before;
+        return 1;
+    }
+    const list grown = list_open(memory, *now, 1);
+    if (!grown.items) return 0;
+    list_close(l, memory);
+    *l = grown;
+    return 1;
+}
+
+static int grow_scratch(viewer_room *room, size_t size, const allocator *memory)
+{
+    if (size <= room->size.scratch) return 1;
+    void *scratch = memory_alloc(memory, size, 1);
+    if (!scratch) return 0;
+    memory_free(memory, room->scratch, room->size.scratch, 1);
+    room->scratch = scratch;
+    room->size.scratch = size;
+    return 1;
+}
+
+result viewer_room_fit(viewer_room *room, const viewer_room_size *size, const allocator *memory)
+{
+    struct { list *l; size_t *before, now; } all[] = {{&room->early_tests, &room->size.early_tests, size->early_tests},
+                                                      {&room->early_captures, &room->size.early_captures, size->early_captures},
+                                                      {&room->early_pictures, &room->size.early_pictures, size->early_pictures},
+                                                      {&room->slot_marks, &room->size.slot_marks, size->slot_marks},
+                                                      {&room->seen, &room->size.seen, size->seen}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
+        if (!grow_list(all[i].l, *all[i].before, &all[i].now, memory)) return RESULT_NO_MEMORY; // those grown so far are just larger
+        *all[i].before = all[i].now;
+    }
+    return grow_scratch(room, size->scratch, memory) ? RESULT_OK : RESULT_NO_MEMORY;
+}
+
+void viewer_room_close(viewer_room *room, const allocator *memory)
+{
+    list *const all[] = {&room->early_tests, &room->early_captures, &room->early_pictures, &room->slot_marks, &room->seen};
+    for (size_t i = 0; i < sizeof all / sizeof *all; ++i) list_close(all[i], memory);
+    memory_free(memory, room->scratch, room->size.scratch, 1);
+    *room = (viewer_room){0};
+}
+
+// ---- One zone ----
 
 static result open_query(viewer *v, uint32_t stage, report *r)
 {
@@ -47,95 +117,94 @@ static result open_queries(viewer *v, report *r)
     return done;
 }
 
-static int open_stages(viewer *v)
+typedef struct list_plan { list *l; size_t count, item_size; } list_plan;
+
+static int open_planned(viewer *v, const viewer_request *q, const list_plan *plans, size_t count)
+{
+    for (size_t i = 0; i < count; ++i) {
+        *plans[i].l = list_open_as(q->lists, v->memory, plans[i].count, plans[i].item_size);
+        if (!plans[i].l->items) return 0;
+    }
+    return 1;
+}
+
+static int open_stages(viewer *v, const viewer_request *q)
 {
     const chain *c = v->chain;
     for (uint32_t i = 0; i < c->stage_count; ++i) {
         const cull_built *b = &c->stages[i].built;
         const uint32_t movers = i == v->last && b->takes_movers ? c->zone.mover_capacity : 0;
         v->stages[i].run_capacity = b->max_runs + movers;
-        if (c->stages[i].role != ROLE_CROSS && !list_take(&v->stages[i].runs, v->memory, v->stages[i].run_capacity, sizeof(cull_run))) return 0;
-        v->scratch_size = b->scratch_size > v->scratch_size ? b->scratch_size : v->scratch_size;
         v->slot_count = max_u32(v->slot_count, b->slot_count);
+        const list_plan plan = {&v->stages[i].runs, v->stages[i].run_capacity, sizeof(cull_run)};
+        if (c->stages[i].role != ROLE_CROSS && !open_planned(v, q, &plan, 1)) return 0;
     }
     return 1;
 }
 
-// Stages before the last may give no tests, and those that are not first no pictures: they learn it from the check of
-// what they wrote, so there has to be room for it.
-static int open_early_lists(viewer *v)
+// Cutting a shared item out of a run makes two of one, at most.
+static size_t drawn_capacity(const viewer *v)
 {
-    uint32_t tests = 0, captures = 0, pictures = 0;
-    for (uint32_t i = 0; i < v->last; ++i) {
-        const cull_built *b = &v->chain->stages[i].built;
-        tests = max_u32(tests, b->max_tests);
-        captures = max_u32(captures, b->max_captures);
-        pictures = max_u32(pictures, b->max_pictures);
-    }
-    return list_take(&v->early_tests, v->memory, tests, sizeof(cull_test)) &&
-           list_take(&v->early_captures, v->memory, captures, sizeof(cull_capture)) &&
-           list_take(&v->early_pictures, v->memory, pictures, sizeof(cull_picture));
+    const cull_built *last = &v->chain->stages[v->last].built;
+    const uint32_t shared = v->chain->data->shared_count;
+    if (last->max_steps <= 1 && !shared && !last->takes_movers) return 0;
+    return (size_t)max_u32(v->stages[v->last].run_capacity, 1) + shared;
 }
 
-static int open_lists(viewer *v)
+static int open_lists(viewer *v, const viewer_request *q)
 {
     const chain *c = v->chain;
     const cull_built *last = &c->stages[v->last].built, *select = &c->stages[0].built;
-    const uint32_t movers = c->zone.mover_capacity;
+    const uint32_t movers = last->takes_movers ? c->zone.mover_capacity : 0, is_filtered = v->last > 0;
+    const int keeps_seen = v->checks == VIEWER_CHECK_ALL && last->max_steps > 1;
     v->answer_capacity = last->max_tests ? last->max_tests * 2 + 1 : 0; // one more than is lent: a full list says that there are more
     v->whole = (cull_run){0, c->zone.item_count};
-    int good = list_take(&v->tests, v->memory, last->max_tests, sizeof(cull_test));
-    good = good && list_take(&v->captures, v->memory, last->max_captures, sizeof(cull_capture));
-    good = good && list_take(&v->pictures, v->memory, last->max_pictures, sizeof(cull_picture));
-    good = good && list_take(&v->select_captures, v->memory, select->max_captures, sizeof(cull_capture));
-    good = good && list_take(&v->select_pictures, v->memory, select->max_pictures, sizeof(cull_picture));
-    good = good && list_take(&v->keep_captures, v->memory, select->max_captures, 1);
-    good = good && list_take(&v->keep_pictures, v->memory, select->max_pictures, 1);
-    good = good && list_take(&v->drawn, v->memory, last->max_steps > 1 ? v->stages[v->last].run_capacity : 0, sizeof(cull_run));
-    good = good && list_take(&v->slot_marks, v->memory, v->slot_count, 1);
-    good = good && list_take(&v->answers, v->memory, v->answer_capacity, sizeof(cull_answer));
-    good = good && list_take(&v->movers, v->memory, movers, sizeof(cull_mover));
-    good = good && list_take(&v->mover_runs, v->memory, movers, sizeof(cull_run));
-    if (v->checks == VIEWER_CHECK_ALL) good = good && list_take(&v->seen, v->memory, ((size_t)c->zone.item_count + movers + 63) / 64, sizeof(uint64_t));
-    v->slots = good ? memory_alloc_zeroed(v->memory, v->slot_count, 1) : NULL;
-    v->scratch = v->slots ? memory_alloc(v->memory, v->scratch_size, 1) : NULL;
-    return v->scratch != NULL;
+    const list_plan plans[] = {
+        {&v->tests, last->max_tests, sizeof(cull_test)},
+        {&v->captures, last->max_captures, sizeof(cull_capture)},
+        {&v->pictures, last->max_pictures, sizeof(cull_picture)},
+        {&v->select_captures, is_filtered ? select->max_captures : 0, sizeof(cull_capture)},
+        {&v->select_pictures, is_filtered ? select->max_pictures : 0, sizeof(cull_picture)},
+        {&v->keep_captures, is_filtered ? select->max_captures : 0, 1},
+        {&v->keep_pictures, is_filtered ? select->max_pictures : 0, 1},
+        {&v->drawn, drawn_capacity(v), sizeof(cull_run)},
+        {&v->answers, v->answer_capacity, sizeof(cull_answer)},
+        {&v->slot_movers, movers < q->mover_numbers ? movers : 0, sizeof(uint32_t)},
+        {&v->seen, keeps_seen ? seen_bytes(c) : 0, 1},
+    };
+    if (!open_planned(v, q, plans, sizeof plans / sizeof *plans)) return 0;
+    memset(v->slot_movers.items, 0xFF, v->slot_movers.size); // SCENE_NONE
+    if (v->slot_count) v->slots = memory_alloc_zeroed(v->memory, v->slot_count, 1);
+    return !v->slot_count || v->slots;
 }
 
-// The least time between two readings: what a frame of no work would show.
-static double clock_overhead_ns(void)
+static size_t viewer_bytes(const chain *c)
 {
-    double least = 1e9;
-    for (int i = 0; i < 64; ++i) {
-        struct timespec a, b;
-        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &a);
-        clock_gettime(CLOCK_THREAD_CPUTIME_ID, &b);
-        const double ns = (double)(b.tv_sec - a.tv_sec) * 1e9 + (double)(b.tv_nsec - a.tv_nsec);
-        if (ns < least) least = ns;
-    }
-    return least;
+    return sizeof(viewer) + c->stage_count * sizeof(viewer_stage);
 }
 
-result viewer_open(const chain *c, const host_services *services, viewer_checks checks, report *r, viewer **out)
+result viewer_open(const viewer_request *q, report *r, viewer **out)
 {
-    viewer *v = memory_alloc_zeroed(services->memory, 1, sizeof *v);
+    const allocator *memory = q->services->memory;
+    viewer *v = memory_alloc_zeroed(memory, 1, viewer_bytes(q->chain));
     if (!v) return report_no_memory(r, NULL);
-    v->chain = c;
-    v->memory = services->memory;
-    v->log = services->log;
+    v->chain = q->chain;
+    v->shared = q->shared;
+    v->room = q->room;
+    v->memory = memory;
+    v->log = q->services->log;
     v->kernel = runs_kernel_best();
-    v->checks = checks;
+    v->checks = q->checks;
 #ifndef NDEBUG
     v->checks = VIEWER_CHECK_ALL;
 #endif
-    choose_stages(v);
+    choose_stages(v->chain, &v->first, &v->last);
     result done = open_queries(v, r);
-    if (done == RESULT_OK && (!open_stages(v) || !open_early_lists(v) || !open_lists(v))) done = report_no_memory(r, NULL);
+    if (done == RESULT_OK && (!open_stages(v, q) || !open_lists(v, q))) done = report_no_memory(r, NULL);
     if (done != RESULT_OK) {
         viewer_close(v);
         return done;
     }
-    v->clock_overhead_ns = clock_overhead_ns();
     *out = v;
     return RESULT_OK;
 }
@@ -147,16 +216,9 @@ void viewer_close(viewer *v)
         if (v->stages[i].query) v->chain->stages[i].plugin->close(v->stages[i].query);
         list_close(&v->stages[i].runs, v->memory);
     }
-    list *const all[] = {&v->tests, &v->captures, &v->pictures, &v->select_captures, &v->select_pictures, &v->keep_captures,
-                         &v->keep_pictures, &v->early_tests, &v->early_captures, &v->early_pictures, &v->drawn, &v->slot_marks,
-                         &v->answers, &v->movers, &v->mover_runs, &v->seen};
+    list *const all[] = {&v->tests, &v->captures, &v->pictures, &v->drawn, &v->select_captures, &v->select_pictures, &v->keep_captures,
+                         &v->keep_pictures, &v->answers, &v->slot_movers, &v->seen};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) list_close(all[i], v->memory);
     memory_free(v->memory, v->slots, v->slot_count, 1);
-    memory_free(v->memory, v->scratch, v->scratch_size, 1);
-    memory_free(v->memory, v, 1, sizeof *v);
-}
-
-double frame_clock_overhead_ns(const viewer *v)
-{
-    return v->clock_overhead_ns;
+    memory_free(v->memory, v, 1, viewer_bytes(v->chain));
 }

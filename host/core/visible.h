@@ -11,7 +11,8 @@
 typedef enum collect_how { COLLECT_WHAT_IS_READY, COLLECT_EVERYTHING } collect_how;
 
 // What carries out batches. Functions may be NULL; without `test` every test counts as seen, without `capture` no slot
-// is ever filled. Called between steps, on the stepping thread; their time is not the cullers'.
+// is ever filled, and without one of `capture` and `show` a zone that gives pictures is drawn whole. Called between steps,
+// on the stepping thread; their time is not the cullers'.
 typedef struct frame_driver {
     void *user;
     void (*draw)(void *user, uint32_t zone, const cull_run *runs, uint32_t run_count); // places in the order of the zone's chain
@@ -37,7 +38,7 @@ typedef struct frame_stats {
     uint64_t nodes_visited, items_drawn; // items of the runs, movers not counted
 } frame_stats;
 
-// What a view sees. An item that several zones list stands in the nearest of them that kept it, once.
+// What a view sees. An item that several zones list stands once, in the first that drew it: near to far in each round.
 typedef struct visible_zone {
     uint32_t zone, run_count;
     const cull_run *runs; // of the zone's items, in its chain's order

@@ -31,9 +31,11 @@ const zone_data *world_zone(const world *w, uint32_t zone);
 // Global id at each place of the zone's present order; zone.item_count of them.
 void world_order(const world *w, uint32_t zone, uint32_t *out);
 // Live swap in two steps: build beside the old one [any thread, views may be culled meanwhile], then put it in its place.
+// Libraries are looked for and cullers created by one building thread at a time; the services' allocator and report are
+// asked from each of them, so they must bear that. Everything else here, drop too, is [main].
 typedef struct world_swap world_swap;
 result world_swap_build(const world *w, uint32_t zone, const chain_spec *spec, report *r, world_swap **out);
-// Takes the swap. On failure the old chain stays, in every view.
+// Takes the swap. On failure the old chain stays, in every view. A visible set with runs of the zone ends with it.
 result world_swap_commit(world *w, world_swap *s, report *r);
 void world_swap_drop(world_swap *s); // NULL is fine: a swap that is not wanted any more
 result world_set_chain(world *w, uint32_t zone, const chain_spec *spec, report *r); // both steps
@@ -48,6 +50,7 @@ result world_mover_add(world *w, const double min[3], const double max[3], uint3
 result world_mover_move(world *w, uint32_t mover, const double min[3], const double max[3]);
 result world_mover_remove(world *w, uint32_t mover);
 const movers *world_movers(const world *w);
+const graph *world_graph(const world *w);
 
 // ---- Views ----
 typedef struct world_view world_view; // one viewer's memory: history, lists, volumes

@@ -13,7 +13,9 @@ typedef struct zone_data {
     const uint32_t *items;  // zone.item_count global ids; NULL: place i is item i (the zone lists all)
     const uint32_t *shared; // shared_count places of items that other zones list too, ascending
     uint32_t index, shared_count;
-    arena memory;
+    const allocator *memory;
+    void *block; // of all arrays that are not the scene's own; block_bytes
+    size_t block_bytes;
 } zone_data;
 
 typedef struct zone_data_request {

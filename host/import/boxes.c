@@ -1,6 +1,6 @@
 // Reader of .boxes files: `boxes N`, then N lines of minx miny minz maxx maxy maxz. A box is one item of 6 polygons.
 // SPDX-License-Identifier: MIT
-#include "import.h"
+#include "reader.h"
 
 #include "line_scan.h"
 #include "number.h"
@@ -123,13 +123,11 @@ static result read_boxes(box_reader *b)
     return b->text.at >= b->text.end ? RESULT_OK : line_scan_fault(&b->text, "more lines than `boxes N` says; correct the count");
 }
 
-result import_boxes(const char *path, const char *text, size_t size, const allocator *memory, report *r, scene **out)
+result boxes_into(const reader_job *j)
 {
-    box_reader b = {.text = {.path = path, .at = text, .end = text + size, .line = 1, .report = r, .comment = '\n'}};
-    if (scene_builder_open(memory, &b.builder) != RESULT_OK) return report_no_memory(r, path);
-    result done = read_boxes(&b);
-    if (done == RESULT_OK && b.flat) report_note(r, "%s: %llu boxes have no area and are left out", path, (unsigned long long)b.flat);
-    if (done == RESULT_OK) done = scene_builder_finish(b.builder, path, r, out);
-    scene_builder_close(b.builder);
+    box_reader b = {.text = {.path = j->path, .at = j->text, .end = j->text + j->size, .line = 1, .report = j->report, .comment = '\n'},
+                    .builder = j->builder};
+    const result done = read_boxes(&b);
+    if (done == RESULT_OK && b.flat) report_note(j->report, "%s: %llu boxes have no area and are left out", j->path, (unsigned long long)b.flat);
     return done;
 }

@@ -1,12 +1,12 @@
-// Import: chooses the reader by the file name's ending.
+// Import: chooses the reader by the file name's ending, and makes a scene of what it reads.
 // SPDX-License-Identifier: MIT
-#include "import.h"
+#include "reader.h"
 
 #include "../core/file.h"
 
 #include <string.h>
 
-typedef enum format { FORMAT_MAP, FORMAT_OBJ, FORMAT_PLY, FORMAT_OFF, FORMAT_STL, FORMAT_BOXES, FORMAT_UNKNOWN } format;
+typedef struct format { const char *ending; reader read; } format;
 
 static int ends_with(const char *path, const char *ending)
 {
@@ -19,40 +19,103 @@ static int ends_with(const char *path, const char *ending)
     return 1;
 }
 
-static format format_of(const char *path)
+reader reader_of_file(const char *path)
 {
-    static const char *const endings[] = {".map", ".obj", ".ply", ".off", ".stl", ".boxes"};
-    for (int i = 0; i < FORMAT_UNKNOWN; ++i)
-        if (ends_with(path, endings[i])) return (format)i;
-    return FORMAT_UNKNOWN;
+    static const format formats[] = {{".json", json_into}, {".map", map_into}, {".obj", obj_into},     {".ply", ply_into},
+                                     {".off", off_into},   {".stl", stl_into}, {".boxes", boxes_into}};
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; ++i)
+        if (ends_with(path, formats[i].ending)) return formats[i].read;
+    return NULL;
 }
 
-static result read_bytes(format f, const char *path, const char *text, size_t size, const import_options *options, const allocator *memory,
-                         report *r, scene **out)
+result reader_text(const import_files *files, const char *path, const allocator *memory, report *r, char **out_text, size_t *out_size)
 {
-    if (size == 0) return report_error(r, path, 0, "the file is empty; name a scene");
-    switch (f) {
-    case FORMAT_MAP: return import_map(path, text, size, options, memory, r, out);
-    case FORMAT_OBJ: return import_obj(path, text, size, memory, r, out);
-    case FORMAT_PLY: return import_ply(path, text, size, memory, r, out);
-    case FORMAT_OFF: return import_off(path, text, size, memory, r, out);
-    case FORMAT_BOXES: return import_boxes(path, text, size, memory, r, out);
-    case FORMAT_STL:
-    case FORMAT_UNKNOWN: break;
+    char *text;
+    size_t size;
+    const result done = files ? files->read(files->user, path, memory, r, &text, &size) : file_read(path, memory, r, &text, &size);
+    if (done != RESULT_OK) return done;
+    if (size == 0) {
+        memory_free(memory, text, 1, 1);
+        return report_error(r, path, 0, "the file is empty; name a scene");
     }
-    return RESULT_BAD_INPUT;
+    *out_text = text;
+    *out_size = size;
+    return RESULT_OK;
+}
+
+result reader_make_scene(reader read, const reader_job *without_builder, scene **out)
+{
+    reader_job j = *without_builder;
+    if (scene_builder_open(j.memory, &j.builder) != RESULT_OK) return report_no_memory(j.report, j.path);
+    result done = read(&j);
+    if (done == RESULT_OK) done = scene_builder_finish(j.builder, j.path, j.report, out);
+    scene_builder_close(j.builder);
+    return done;
 }
 
 result import_scene(const char *path, const import_options *options, const allocator *memory, report *r, scene **out)
 {
-    const format f = format_of(path);
-    if (f == FORMAT_UNKNOWN) return report_error(r, path, 0, "unknown kind of scene; the name must end in .map, .obj, .ply, .off, .stl or .boxes");
-    if (f == FORMAT_STL) return import_stl(path, memory, r, out);
+    const reader read = reader_of_file(path);
+    if (!read) return report_error(r, path, 0, "unknown kind of scene; the name must end in " READER_ENDINGS);
+    char *text = NULL;
+    size_t size = 0;
+    result done = reader_text(NULL, path, memory, r, &text, &size);
+    if (done != RESULT_OK) return done;
+    done = reader_make_scene(read, &(reader_job){.path = path, .text = text, .size = size, .options = options, .memory = memory, .report = r}, out);
+    memory_free(memory, text, size + 1, 1);
+    return done;
+}
+
+// ---- From bytes ----
+
+static const import_options as_the_file_says = {DOORS_OPEN};
+
+result import_json(const char *path, const char *text, size_t size, const import_options *options, const import_files *files,
+                   const allocator *memory, report *r, scene **out)
+{
+    const reader_job j = {.path = path, .text = text, .size = size, .options = options, .files = files, .memory = memory, .report = r};
+    return reader_make_scene(json_into, &j, out);
+}
+
+result import_map(const char *path, const char *text, size_t size, const import_options *options, const allocator *memory, report *r, scene **out)
+{
+    const reader_job j = {.path = path, .text = text, .size = size, .options = options, .memory = memory, .report = r};
+    return reader_make_scene(map_into, &j, out);
+}
+
+static result make_plain(reader read, const char *path, const char *text, size_t size, const allocator *memory, report *r, scene **out)
+{
+    const reader_job j = {.path = path, .text = text, .size = size, .options = &as_the_file_says, .memory = memory, .report = r};
+    return reader_make_scene(read, &j, out);
+}
+
+result import_boxes(const char *path, const char *text, size_t size, const allocator *memory, report *r, scene **out)
+{
+    return make_plain(boxes_into, path, text, size, memory, r, out);
+}
+
+result import_obj(const char *path, const char *text, size_t size, const allocator *memory, report *r, scene **out)
+{
+    return make_plain(obj_into, path, text, size, memory, r, out);
+}
+
+result import_ply(const char *path, const char *text, size_t size, const allocator *memory, report *r, scene **out)
+{
+    return make_plain(ply_into, path, text, size, memory, r, out);
+}
+
+result import_off(const char *path, const char *text, size_t size, const allocator *memory, report *r, scene **out)
+{
+    return make_plain(off_into, path, text, size, memory, r, out);
+}
+
+result import_stl(const char *path, const allocator *memory, report *r, scene **out)
+{
     char *text;
     size_t size;
     result done = file_read(path, memory, r, &text, &size);
     if (done != RESULT_OK) return done;
-    done = read_bytes(f, path, text, size, options, memory, r, out);
+    done = make_plain(stl_into, path, text, size, memory, r, out);
     memory_free(memory, text, size + 1, 1);
     return done;
 }

@@ -1,8 +1,8 @@
 // Reader of .map files, Standard and Valve 220: brushes to convex polygons and bodies by plane clipping, one zone.
 // SPDX-License-Identifier: MIT
 // Invariant: a map point (x, y, z) is (x, z, -y) / 32 in the scene: a rotation and a power of two, so exact.
-#include "import.h"
 #include "map_stage.h"
+#include "reader.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -90,7 +90,7 @@ static result add_wall(map_import *i, const staged_polygon *polygon, uint32_t ob
     return scene_builder_item(i->builder, &item);
 }
 
-// All of a mover is one item: of an opaque material where it has one, so that it counts as an occluder's kind.
+// All of a mover is one item, with a door of its own where it opens: of an opaque material where it has one, so that it counts as an occluder's kind.
 static result add_mover(map_import *i, const char *name, const double offset[3], uint32_t object)
 {
     static const double nowhere[3] = {0};
@@ -114,7 +114,10 @@ static result add_mover(map_import *i, const char *name, const double offset[3],
     item.polygon_triangles = triangles;
     double open_offset[3];
     to_scene(offset, nowhere, open_offset);
-    return scene_builder_mover(i->builder, name, open_offset, &item);
+    const result done = scene_builder_mover(i->builder, name, open_offset, &item);
+    if (done != RESULT_OK || (open_offset[0] == 0 && open_offset[1] == 0 && open_offset[2] == 0)) return done;
+    uint32_t door;
+    return scene_builder_door(i->builder, name, i->doors, scene_builder_mover_count(i->builder) - 1, &door);
 }
 
 // ---- Bodies and places ----
@@ -227,17 +230,16 @@ static result read_all(map_import *i)
     }
 }
 
-static result import_with(map_import *i, scene **out)
+static result read_map(map_import *i)
 {
     report *r = i->reader.report;
     const char *path = i->reader.path;
-    if (scene_builder_open(i->entity.keys.memory, &i->builder) != RESULT_OK) return report_no_memory(r, path);
     scene_builder_map(i->builder);
     const result done = read_all(i);
     if (done != RESULT_OK) return done;
     if (i->reader.entities_read == 0) return report_error(r, path, i->reader.line, "no entity in it; is this a .map file?");
     if (i->stage.polygons_dropped) report_note(r, "%s: %u faces without area are left out", path, i->stage.polygons_dropped);
-    return scene_builder_finish(i->builder, path, r, out);
+    return RESULT_OK;
 }
 
 static size_t byte_order_mark(const char *text, size_t size) // UTF-8's
@@ -245,18 +247,19 @@ static size_t byte_order_mark(const char *text, size_t size) // UTF-8's
     return size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
 }
 
-result import_map(const char *path, const char *text, size_t size, const import_options *options, const allocator *memory, report *r, scene **out)
+result map_into(const reader_job *j)
 {
-    map_import i = {.reader = {.path = path, .at = text + byte_order_mark(text, size), .end = text + size, .line = 1, .report = r},
+    const allocator *memory = j->memory;
+    map_import i = {.reader = {.path = j->path, .at = j->text + byte_order_mark(j->text, j->size), .end = j->text + j->size, .line = 1, .report = j->report},
                     .entity = map_entity_make(memory),
                     .stage = map_stage_make(memory),
+                    .builder = j->builder,
                     .vertices = buffer_make(memory, sizeof(builder_vertex)),
                     .indices = buffer_make(memory, sizeof(uint32_t)),
                     .triangles = buffer_make(memory, sizeof(uint32_t)),
                     .planes = buffer_make(memory, sizeof(scene_solid_plane)),
-                    .doors = options->doors};
-    const result done = import_with(&i, out);
-    scene_builder_close(i.builder);
+                    .doors = j->options->doors};
+    const result done = read_map(&i);
     buffer_free(&i.vertices);
     buffer_free(&i.indices);
     buffer_free(&i.triangles);

@@ -70,7 +70,6 @@ static void maker_close(scene_maker *m)
     triangulator_free(&m->triangulator);
     memory_free(m->memory, m->local_of, m->soup->positions.count, sizeof *m->local_of);
     memory_free(m->memory, m->materials, m->soup->materials.count, sizeof *m->materials);
-    scene_builder_close(m->builder);
 }
 
 static const double *soup_position(const mesh_soup *s, uint32_t position)
@@ -367,11 +366,11 @@ static void report_repairs(const scene_maker *m)
     if (cut || apart) report_note(m->report, "%s: not a surface everywhere: %llu vertices doubled, %llu faces set apart", m->path, cut, apart);
 }
 
-static result make_scene(scene_maker *m, scene **out)
+static result add_scene(scene_maker *m)
 {
     m->local_of = memory_alloc(m->memory, m->soup->positions.count, sizeof *m->local_of);
     m->materials = memory_alloc(m->memory, m->soup->materials.count, sizeof *m->materials);
-    if (!m->local_of || !m->materials || scene_builder_open(m->memory, &m->builder) != RESULT_OK) return report_no_memory(m->report, m->path);
+    if (!m->local_of || !m->materials) return report_no_memory(m->report, m->path);
     memset(m->local_of, 0xff, m->soup->positions.count * sizeof *m->local_of);
     memset(m->materials, 0xff, m->soup->materials.count * sizeof *m->materials);
     m->flat_m = flat_height(m->soup);
@@ -380,14 +379,14 @@ static result make_scene(scene_maker *m, scene **out)
     if (done != RESULT_OK) return report_error(m->report, m->path, 0, "over 65,535 materials or 2^32 vertices or indices; split the file");
     if (m->dropped == m->soup->polygons.count) return report_error(m->report, m->path, 0, "none of its %zu faces has an area; correct them", m->soup->polygons.count);
     report_repairs(m);
-    return scene_builder_finish(m->builder, m->path, m->report, out);
+    return RESULT_OK;
 }
 
-result mesh_scene_build(const mesh_soup *soup, const char *path, const allocator *memory, report *r, scene **out)
+result mesh_scene_into(const mesh_soup *soup, const reader_job *j)
 {
-    scene_maker m = {.soup = soup, .path = path, .memory = memory, .report = r};
+    scene_maker m = {.soup = soup, .path = j->path, .memory = j->memory, .report = j->report, .builder = j->builder};
     maker_open(&m);
-    const result done = make_scene(&m, out);
+    const result done = add_scene(&m);
     maker_close(&m);
     return done;
 }

@@ -3,7 +3,7 @@
 #ifndef PORTCULLIS_IMPORT_MESH_SOUP_H
 #define PORTCULLIS_IMPORT_MESH_SOUP_H
 
-#include "../core/scene.h"
+#include "reader.h"
 
 enum { POLYGON_CORNERS_MOST = 65535 };
 #define SOUP_NO_TEXCOORD UINT32_MAX
@@ -39,7 +39,8 @@ void soup_use(soup_largest *l, uint64_t index, size_t line);
 result soup_polygon_end(mesh_soup *s, size_t first_corner, uint32_t material);
 soup_name soup_file_stem(const char *path); // "dir/bunny.obj": "bunny"
 
-// Drops polygons without area, repairs, triangulates, clusters; reports everything. Indices must be in range.
-result mesh_scene_build(const mesh_soup *soup, const char *path, const allocator *memory, report *r, scene **out);
+// Drops polygons without area, repairs, triangulates, clusters, adds to the job's builder; reports everything. Indices must
+// be in range.
+result mesh_scene_into(const mesh_soup *soup, const reader_job *j);
 
 #endif

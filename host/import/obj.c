@@ -1,7 +1,6 @@
 // Reader of Wavefront .obj: v, vt, vn (counted), f in every index form, o, g, usemtl; all else is skipped.
 // SPDX-License-Identifier: MIT
 // Invariant: after reading, every corner's indices are in range; errors name the line.
-#include "import.h"
 #include "mesh_soup.h"
 #include "mesh_text.h"
 
@@ -206,13 +205,13 @@ static result read_all(obj_reader *o)
     return done == RESULT_OK ? make_objects(o) : done;
 }
 
-result import_obj(const char *path, const char *text, size_t size, const allocator *memory, report *r, scene **out)
+result obj_into(const reader_job *j)
 {
-    mesh_soup soup = soup_make(memory);
-    obj_reader o = {.text = text_make(path, text, size, r), .soup = &soup, .groups = buffer_make(memory, sizeof(obj_group))};
+    mesh_soup soup = soup_make(j->memory);
+    obj_reader o = {.text = text_make(j->path, j->text, j->size, j->report), .soup = &soup, .groups = buffer_make(j->memory, sizeof(obj_group))};
     o.text.joins_lines = 1;
     result done = read_all(&o);
-    if (done == RESULT_OK) done = mesh_scene_build(&soup, path, memory, r, out);
+    if (done == RESULT_OK) done = mesh_scene_into(&soup, j);
     buffer_free(&o.groups);
     soup_free(&soup);
     return done;

@@ -1,6 +1,5 @@
 // Reader of .off and its kin (COFF, NOFF, STOFF, ...): positions and faces, the rest of each line is skipped.
 // SPDX-License-Identifier: MIT
-#include "import.h"
 #include "mesh_soup.h"
 #include "mesh_text.h"
 
@@ -107,12 +106,12 @@ static result read_all(off_reader *o)
     return done == RESULT_OK ? read_lines(o) : done;
 }
 
-result import_off(const char *path, const char *text, size_t size, const allocator *memory, report *r, scene **out)
+result off_into(const reader_job *j)
 {
-    mesh_soup soup = soup_make(memory);
-    off_reader o = {.text = text_make(path, text, size, r), .soup = &soup};
+    mesh_soup soup = soup_make(j->memory);
+    off_reader o = {.text = text_make(j->path, j->text, j->size, j->report), .soup = &soup};
     result done = read_all(&o);
-    if (done == RESULT_OK) done = mesh_scene_build(&soup, path, memory, r, out);
+    if (done == RESULT_OK) done = mesh_scene_into(&soup, j);
     soup_free(&soup);
     return done;
 }

@@ -1,7 +1,6 @@
 // Reader of Stanford .ply: ascii and binary of both byte orders, positions of any numeric type, faces of any size.
 // SPDX-License-Identifier: MIT
 // Invariant: each value read is one that the header tells of and takes at least a byte, so the file's size bounds the work.
-#include "import.h"
 #include "mesh_ply.h"
 #include "mesh_soup.h"
 
@@ -142,14 +141,14 @@ static result read_all(ply_reader *p)
     return done == RESULT_OK ? read_elements(p) : done;
 }
 
-result import_ply(const char *path, const char *text, size_t size, const allocator *memory, report *r, scene **out)
+result ply_into(const reader_job *j)
 {
-    mesh_soup soup = soup_make(memory);
-    ply_reader p = {.text = text_make(path, text, size, r), .first = text, .soup = &soup};
-    p.header.elements = buffer_make(memory, sizeof(ply_element));
-    p.header.properties = buffer_make(memory, sizeof(ply_property));
+    mesh_soup soup = soup_make(j->memory);
+    ply_reader p = {.text = text_make(j->path, j->text, j->size, j->report), .first = j->text, .soup = &soup};
+    p.header.elements = buffer_make(j->memory, sizeof(ply_element));
+    p.header.properties = buffer_make(j->memory, sizeof(ply_property));
     result done = read_all(&p);
-    if (done == RESULT_OK) done = mesh_scene_build(&soup, path, memory, r, out);
+    if (done == RESULT_OK) done = mesh_scene_into(&soup, j);
     buffer_free(&p.header.elements);
     buffer_free(&p.header.properties);
     soup_free(&soup);

@@ -1,8 +1,6 @@
 // Reader of .stl: checked here, because OpenMesh takes any bytes for numbers; ascii is made binary; then OpenMesh reads it.
 // SPDX-License-Identifier: MIT
-#include "../core/file.h"
 #include "../mesh/mesh.h"
-#include "import.h"
 #include "mesh_soup.h"
 #include "mesh_text.h"
 
@@ -128,16 +126,11 @@ static result read_soup(mesh_soup *soup, const char *path, const char *bytes, si
     return done;
 }
 
-result import_stl(const char *path, const allocator *memory, report *r, scene **out)
+result stl_into(const reader_job *j)
 {
-    char *bytes;
-    size_t size;
-    result done = file_read(path, memory, r, &bytes, &size);
-    if (done != RESULT_OK) return done;
-    mesh_soup soup = soup_make(memory);
-    done = read_soup(&soup, path, bytes, size, memory, r);
-    memory_free(memory, bytes, size + 1, 1);
-    if (done == RESULT_OK) done = mesh_scene_build(&soup, path, memory, r, out);
+    mesh_soup soup = soup_make(j->memory);
+    result done = read_soup(&soup, j->path, j->text, j->size, j->memory, j->report);
+    if (done == RESULT_OK) done = mesh_scene_into(&soup, j);
     soup_free(&soup);
     return done;
 }

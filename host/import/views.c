@@ -1,4 +1,4 @@
-// Camera paths: .views files in and out, and the choice between a file and automatic views.
+// Camera paths: .views files in and out, and the choice between a file, a path of the scene and automatic views.
 // SPDX-License-Identifier: MIT
 #include "views.h"
 
@@ -119,6 +119,31 @@ static result make_automatic(auto_kind kind, uint32_t count, const scene *s, dou
     return RESULT_OK;
 }
 
+// ---- Of the scene ----
+
+static result copy_path(const scene *s, const scene_camera_path *from, const allocator *memory, report *r, camera_path *out)
+{
+    camera *cameras = memory_alloc(memory, from->camera_count, sizeof *cameras);
+    if (!cameras) return report_no_memory(r, s->path);
+    memcpy(cameras, s->cameras + from->first_camera, from->camera_count * sizeof *cameras);
+    *out = (camera_path){.cameras = cameras, .count = from->camera_count};
+    snprintf(out->name, sizeof out->name, "%s", from->name);
+    return RESULT_OK;
+}
+
+static result find_path(const char *what, const char *name, const scene *s, const allocator *memory, report *r, camera_path *out)
+{
+    char known[256] = "";
+    if (s->path_count == 0) return report_error(r, NULL, 0, "--views %s: %s has no camera path; use auto:N, or a .views file", what, s->path);
+    if (!*name) return copy_path(s, &s->paths[0], memory, r, out);
+    for (uint32_t p = 0; p < s->path_count; ++p) {
+        if (strcmp(s->paths[p].name, name) == 0) return copy_path(s, &s->paths[p], memory, r, out);
+        const size_t used = strlen(known);
+        snprintf(known + used, sizeof known - used, "%s%s", used ? ", " : "", s->paths[p].name);
+    }
+    return report_error(r, NULL, 0, "--views %s: no such path in %s; it has: %s", what, s->path, known);
+}
+
 result camera_path_load(const char *what, const scene *s, double aspect, const allocator *memory, report *r, camera_path *out)
 {
     const char *number = NULL;
@@ -128,6 +153,8 @@ result camera_path_load(const char *what, const scene *s, double aspect, const a
         if (!count) return report_error(r, NULL, 0, "--views %s: write auto:N or auto:walk:N, N from 1 to 100000", what);
         return make_automatic(kind, count, s, aspect, memory, r, out);
     }
+    static const char of_scene[] = "path:";
+    if (strncmp(what, of_scene, sizeof of_scene - 1) == 0) return find_path(what, what + sizeof of_scene - 1, s, memory, r, out);
     char *text;
     size_t size;
     result done = file_read(what, memory, r, &text, &size);

@@ -1,4 +1,4 @@
-// Camera paths: .views files, and the repeatable automatic views auto:N and auto:walk:N.
+// Camera paths: .views files, those of the scene, and the repeatable automatic views auto:N and auto:walk:N.
 // SPDX-License-Identifier: MIT
 #ifndef PORTCULLIS_HOST_VIEWS_H
 #define PORTCULLIS_HOST_VIEWS_H
@@ -12,7 +12,8 @@ typedef struct camera_path {
     char name[128]; // "city.views" -> "city", "auto:100", "auto:walk:300": for bench names
 } camera_path;
 
-// `what` is a file name, "auto:N" or "auto:walk:N". aspect: of the picture, for automatic views only.
+// `what` is a file name, "auto:N", "auto:walk:N", "path:NAME" (one of the scene's) or "path:" (its first). aspect: of the
+// picture, for automatic views only.
 result camera_path_load(const char *what, const scene *s, double aspect, const allocator *memory, report *r, camera_path *out);
 result camera_path_parse(const char *path, const char *text, size_t size, const allocator *memory, report *r, camera_path *out);
 // The path as text in .views format; free with memory_free(memory, text, size + 1, 1).

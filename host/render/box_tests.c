@@ -1,173 +1,258 @@
-// Box tests in flight: batches of counts, read back when the driver is done or when the bench says that it is.
+// Box tests in flight: tests of any zones drawn together, read back together, answered to the zone that asked.
 // SPDX-License-Identifier: MIT
-// Invariant: answers come oldest first; where memory fails, tests go unanswered, and an unanswered test counts as seen.
+// Invariant: a zone's answers come oldest first and are no other zone's; where memory fails, tests go unanswered, and an
+// unanswered test counts as seen.
 #include "gl.h"
 
-static const uint32_t SLOT_HIDDEN = 0xffffffffu, SLOT_SEEN = 0xfffffffeu; // known without drawing
-static const uint64_t WAIT_NS = 1000000000u;
-enum { BATCHES = 16 }; // places of a ring that nothing is known about
+#include <string.h>
 
-static void batch_close(renderer *g, test_batch *b)
+static const uint64_t WAIT_NS = 1000000000u;
+enum { GROUP_LEAST = 4096, ENTRIES_LEAST = 1024, BY_DRIVER_STEPS = 4 }; // steps: how late a driver's answers are reckoned to be
+
+// ---- Room ----
+
+static void group_close(renderer *g, test_group *b)
 {
     if (b->fence) glDeleteSync(b->fence);
     glDeleteBuffers(1, &b->counts);
-    memory_free(g->memory, b->tags, b->capacity, sizeof *b->tags);
-    memory_free(g->memory, b->slots, b->capacity, sizeof *b->slots);
+    memory_free(g->memory, b->entries, b->capacity, sizeof *b->entries);
     memory_free(g->memory, b->pixels, b->capacity, sizeof *b->pixels);
-    *b = (test_batch){0};
+    *b = (test_group){0};
 }
 
-static int batch_reserve(renderer *g, test_batch *b, uint32_t count)
+// Of a group that nothing is in.
+static int group_reserve(renderer *g, test_group *b, uint32_t count)
 {
     if (count <= b->capacity) return 1;
-    uint32_t capacity = 256;
+    uint32_t capacity = GROUP_LEAST;
     while (capacity < count && capacity < 0x40000000u) capacity *= 2;
     if (capacity < count) return 0;
-    batch_close(g, b);
+    group_close(g, b);
     b->capacity = capacity;
-    b->tags = memory_alloc(g->memory, capacity, sizeof *b->tags);
-    b->slots = memory_alloc(g->memory, capacity, sizeof *b->slots);
+    b->entries = memory_alloc(g->memory, capacity, sizeof *b->entries);
     b->pixels = memory_alloc(g->memory, capacity, sizeof *b->pixels);
-    if (!b->tags || !b->slots || !b->pixels) {
-        batch_close(g, b);
+    if (!b->entries || !b->pixels) {
+        group_close(g, b);
         return 0;
     }
     glCreateBuffers(1, &b->counts);
     glNamedBufferStorage(b->counts, (GLsizeiptr)(capacity * sizeof(uint32_t)), NULL, GL_DYNAMIC_STORAGE_BIT);
+    glClearNamedBufferData(b->counts, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
     return 1;
 }
 
-static test_batch *queue_place(test_queue *q, uint32_t i)
-{
-    return &q->batches[(q->first + i) % q->capacity];
-}
-
-static int queue_grow(renderer *g, uint32_t capacity)
+static result entries_grow(renderer *g, uint32_t capacity)
 {
     test_queue *q = &g->tests;
-    test_batch *batches = memory_alloc_zeroed(g->memory, capacity, sizeof *batches);
-    if (!batches) return 0;
-    for (uint32_t i = 0; i < q->capacity; ++i) batches[i] = *queue_place(q, i); // free places too: they keep their buffers
-    memory_free(g->memory, q->batches, q->capacity, sizeof *q->batches);
-    q->batches = batches;
+    test_entry *entries = memory_alloc(g->memory, capacity, sizeof *entries);
+    if (!entries) return RESULT_NO_MEMORY;
+    if (q->capacity) memcpy(entries, q->entries, q->capacity * sizeof *entries);
+    for (uint32_t i = q->capacity; i < capacity; ++i) entries[i].next = i + 1 < capacity ? i + 1 : q->capacity ? q->free : TEST_NONE;
+    q->free = q->capacity;
+    memory_free(g->memory, q->entries, q->capacity, sizeof *entries);
+    q->entries = entries;
     q->capacity = capacity;
-    q->first = 0;
-    return 1;
-}
-
-static int queue_reserve(renderer *g)
-{
-    const test_queue *q = &g->tests;
-    return q->count < q->capacity || queue_grow(g, q->capacity ? q->capacity * 2 : BATCHES);
-}
-
-// A test waits for `latency` calls of renderer_collect more; by the driver's clock nobody knows how many.
-result tests_reserve(renderer *g, uint32_t tests_a_step)
-{
-    test_queue *q = &g->tests;
-    const uint32_t places = q->by_driver ? BATCHES : q->latency + 2;
-    if (tests_a_step == 0) return RESULT_OK;
-    if (places > q->capacity && !queue_grow(g, places)) return RESULT_NO_MEMORY;
-    for (uint32_t i = q->count; i < q->capacity; ++i)
-        if (!batch_reserve(g, queue_place(q, i), tests_a_step)) return RESULT_NO_MEMORY;
     return RESULT_OK;
 }
 
-static void batch_fill(renderer *g, test_batch *b, const cull_test *tests, uint32_t count)
-{
-    boxes_begin(g, &g->frame.view, b->counts);
-    b->tested = 0;
-    for (uint32_t i = 0; i < count; ++i) {
-        eye_box widened;
-        const box_fate fate = box_place(&g->frame.view, &tests[i].box, &widened);
-        b->tags[i] = tests[i].tag;
-        b->slots[i] = fate == BOX_NEAR ? SLOT_SEEN : fate == BOX_OUTSIDE ? SLOT_HIDDEN : b->tested;
-        if (fate != BOX_TESTED) continue;
-        b->tested++;
-        boxes_add(g, &widened);
-    }
-    boxes_end(g);
-    if (b->tested) b->fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
-    if (b->tested) glFlush();
-}
-
-void renderer_test(renderer *g, const cull_test *tests, uint32_t count, uint32_t frame)
+// A zone's test waits for `latency` of its collects more; by the driver's clock nobody knows how many.
+result tests_reserve(renderer *g, uint32_t tests_a_step)
 {
     test_queue *q = &g->tests;
-    if (count == 0 || !g->frame.open || !queue_reserve(g)) return;
-    test_batch *b = queue_place(q, q->count);
-    if (!batch_reserve(g, b, count)) return;
-    b->count = count;
-    b->taken = b->is_read = 0;
-    b->frame = frame;
-    b->asked = q->collects;
-    frame_bind(g); // every opaque run given so far was drawn at once
-    glClearNamedBufferSubData(b->counts, GL_R32UI, 0, (GLsizeiptr)(count * sizeof(uint32_t)), GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
-    batch_fill(g, b, tests, count);
+    const uint64_t steps = q->by_driver ? BY_DRIVER_STEPS : (uint64_t)q->latency + 2, entries = steps * tests_a_step;
+    if (tests_a_step == 0) return RESULT_OK;
+    if (entries > q->capacity && (entries >= TEST_NONE || entries_grow(g, (uint32_t)entries) != RESULT_OK)) return RESULT_NO_MEMORY;
+    for (uint32_t i = q->count; i < TEST_GROUPS; ++i) // the others grow when they are free
+        if (!(i == q->count && q->is_staging) && !group_reserve(g, &q->groups[(q->first + i) % TEST_GROUPS], tests_a_step)) return RESULT_NO_MEMORY;
+    return RESULT_OK;
+}
+
+result renderer_reserve(renderer *g, uint32_t tests_a_step, report *r)
+{
+    if (tests_reserve(g, tests_a_step) == RESULT_OK) return gl_check(g, r, "making room for box tests");
+    return report_no_memory(r, g->scene.scene ? g->scene.scene->path : NULL);
+}
+
+// ---- Groups ----
+
+// Every zone's tests of the oldest group get what was counted. Waits for the driver.
+static void resolve_oldest(renderer *g)
+{
+    test_queue *q = &g->tests;
+    test_group *b = &q->groups[q->first];
+    while (b->fence && glClientWaitSync(b->fence, GL_SYNC_FLUSH_COMMANDS_BIT, WAIT_NS) == GL_TIMEOUT_EXPIRED) continue;
+    glDeleteSync(b->fence);
+    b->fence = NULL;
+    const GLsizeiptr bytes = (GLsizeiptr)(b->count * sizeof(uint32_t));
+    glGetNamedBufferSubData(b->counts, 0, bytes, b->pixels);
+    glClearNamedBufferSubData(b->counts, GL_R32UI, 0, bytes, GL_RED_INTEGER, GL_UNSIGNED_INT, NULL);
+    for (uint32_t i = 0; i < b->count; ++i) q->entries[b->entries[i]].pixels = b->pixels[i] < TEST_NONE ? b->pixels[i] : TEST_NONE - 1;
+    b->count = 0;
+    q->first = (q->first + 1) % TEST_GROUPS;
+    q->count--;
+}
+
+static void resolve_what_is_done(renderer *g)
+{
+    test_queue *q = &g->tests;
+    while (q->count) {
+        const test_group *b = &q->groups[q->first];
+        if (b->fence && glClientWaitSync(b->fence, GL_SYNC_FLUSH_COMMANDS_BIT, 0) == GL_TIMEOUT_EXPIRED) return;
+        resolve_oldest(g);
+    }
+}
+
+static test_group *staged_group(test_queue *q)
+{
+    return &q->groups[(q->first + q->count) % TEST_GROUPS];
+}
+
+void tests_submit(renderer *g)
+{
+    test_queue *q = &g->tests;
+    if (!q->is_staging) return;
+    test_group *b = staged_group(q);
+    q->is_staging = 0;
+    if (b->count == 0) return;
+    frame_bind(g);
+    boxes_end(g);
+    b->fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    glFlush();
     q->count++;
     gl_check(g, NULL, "testing boxes");
 }
 
-static int is_ready(const test_queue *q, const test_batch *b)
-{
-    if (!q->by_driver) return q->collects - b->asked > q->latency;
-    if (!b->fence) return 1;
-    const GLenum state = glClientWaitSync(b->fence, GL_SYNC_FLUSH_COMMANDS_BIT, 0);
-    return state != GL_TIMEOUT_EXPIRED;
-}
-
-static void batch_read(test_batch *b)
-{
-    if (b->is_read) return;
-    b->is_read = 1;
-    if (!b->fence) return;
-    while (glClientWaitSync(b->fence, GL_SYNC_FLUSH_COMMANDS_BIT, WAIT_NS) == GL_TIMEOUT_EXPIRED) continue;
-    glDeleteSync(b->fence);
-    b->fence = NULL;
-    glGetNamedBufferSubData(b->counts, 0, (GLsizeiptr)(b->tested * sizeof(uint32_t)), b->pixels);
-}
-
-static uint32_t batch_take(test_batch *b, uint32_t frame, cull_answer *answers, uint32_t capacity)
-{
-    uint32_t given = 0;
-    for (; b->taken < b->count && given < capacity; ++b->taken) {
-        const uint32_t slot = b->slots[b->taken];
-        const uint32_t pixels = slot == SLOT_SEEN ? 1 : slot == SLOT_HIDDEN ? 0 : b->pixels[slot];
-        answers[given++] = (cull_answer){.tag = b->tags[b->taken], .pixels = pixels, .age = frame - b->frame};
-    }
-    return given;
-}
-
-uint32_t renderer_collect(renderer *g, collect how, uint32_t frame, cull_answer *answers, uint32_t capacity, uint32_t *stalled)
+// A group with room for so many more, being staged. NULL: no memory.
+static test_group *group_for(renderer *g, uint32_t count)
 {
     test_queue *q = &g->tests;
+    if (q->is_staging && staged_group(q)->capacity - staged_group(q)->count >= count) return staged_group(q);
+    tests_submit(g);
+    if (q->count == TEST_GROUPS) resolve_oldest(g);
+    test_group *b = staged_group(q);
+    if (!group_reserve(g, b, count)) return NULL;
+    q->is_staging = 1;
+    boxes_begin(g, &g->frame.view, b->counts);
+    return b;
+}
+
+// ---- Asking ----
+
+static uint32_t entry_take(renderer *g)
+{
+    test_queue *q = &g->tests;
+    const uint32_t more = q->capacity ? q->capacity * 2 : ENTRIES_LEAST;
+    if ((q->capacity == 0 || q->free == TEST_NONE) && (more < q->capacity || entries_grow(g, more) != RESULT_OK)) return TEST_NONE;
+    const uint32_t e = q->free;
+    q->free = q->entries[e].next;
+    return e;
+}
+
+static void append(test_queue *q, layout_zone *z, uint32_t e)
+{
+    q->entries[e].next = TEST_NONE;
+    if (z->newest_test == TEST_NONE) z->oldest_test = e;
+    else q->entries[z->newest_test].next = e;
+    z->newest_test = e;
+}
+
+static void move_box(const cull_box *box, const double offset[3], mover_box *out)
+{
+    const float low[3] = {box->min.x, box->min.y, box->min.z}, high[3] = {box->max.x, box->max.y, box->max.z};
+    for (int k = 0; k < 3; ++k) {
+        out->low[k] = (double)low[k] + offset[k];
+        out->high[k] = (double)high[k] + offset[k];
+    }
+}
+
+void renderer_test(renderer *g, const render_layout *l, uint32_t zone, const cull_test *tests, uint32_t count, uint32_t frame)
+{
+    test_queue *q = &g->tests;
+    if (count == 0 || !g->frame.open || zone >= l->zone_count) return;
+    layout_zone *z = &l->zones[zone];
+    double offset[3];
+    if (!q->is_staging) frame_flush(g); // tests see what was drawn so far
+    test_group *b = group_for(g, count);
+    if (!b) return;
+    layout_zone_offset(g, zone, offset);
+    frame_bind(g);
+    for (uint32_t i = 0; i < count; ++i) {
+        mover_box box;
+        eye_box widened;
+        const uint32_t e = entry_take(g);
+        if (e == TEST_NONE) break;
+        move_box(&tests[i].box, offset, &box);
+        const box_fate fate = box_place(&g->frame.view, &box, &widened);
+        q->entries[e] = (test_entry){.tag = tests[i].tag, .frame = frame, .asked = z->collects, .pixels = fate == BOX_NEAR ? 1 : fate == BOX_OUTSIDE ? 0 : TEST_NONE};
+        append(q, z, e);
+        if (fate != BOX_TESTED) continue;
+        b->entries[b->count++] = e;
+        boxes_add(g, &widened);
+    }
+}
+
+// ---- Answering ----
+
+static int is_ready(renderer *g, const layout_zone *z, const test_entry *e)
+{
+    const test_queue *q = &g->tests;
+    if (!q->by_driver) return z->collects - e->asked > q->latency;
+    if (e->pixels == TEST_NONE) resolve_what_is_done(g);
+    return e->pixels != TEST_NONE;
+}
+
+static void drop_oldest(test_queue *q, layout_zone *z)
+{
+    const uint32_t e = z->oldest_test;
+    z->oldest_test = q->entries[e].next;
+    if (z->oldest_test == TEST_NONE) z->newest_test = TEST_NONE;
+    q->entries[e].next = q->free;
+    q->free = e;
+}
+
+uint32_t renderer_collect(renderer *g, const collect_request *c, cull_answer *answers, uint32_t capacity, uint32_t *stalled)
+{
+    test_queue *q = &g->tests;
+    if (c->zone >= c->layout->zone_count) return 0;
+    layout_zone *z = &c->layout->zones[c->zone];
     uint32_t given = 0;
-    q->collects++;
-    while (q->count && given < capacity) {
-        test_batch *b = queue_place(q, 0);
-        if (!b->is_read && !is_ready(q, b)) {
-            if (how == COLLECT_READY) break;
+    z->collects++;
+    if (z->oldest_test == TEST_NONE) return 0;
+    tests_submit(g);
+    while (z->oldest_test != TEST_NONE && given < capacity) {
+        const test_entry *e = &q->entries[z->oldest_test];
+        if (!is_ready(g, z, e)) {
+            if (c->how == COLLECT_READY) break;
             *stalled = 1;
         }
-        batch_read(b);
-        given += batch_take(b, frame, answers + given, capacity - given);
-        if (b->taken < b->count) break;
-        q->first = (q->first + 1) % q->capacity;
-        q->count--;
+        while (e->pixels == TEST_NONE && q->count) resolve_oldest(g);
+        answers[given++] = (cull_answer){.tag = e->tag, .pixels = e->pixels, .age = c->frame - e->frame};
+        drop_oldest(q, z);
     }
     gl_check(g, NULL, "reading box tests");
     return given;
 }
 
+// ---- Forgetting ----
+
+static void resolve_all(renderer *g)
+{
+    tests_submit(g);
+    while (g->tests.count) resolve_oldest(g);
+}
+
+void tests_forget_zone(renderer *g, render_layout *l, uint32_t zone)
+{
+    layout_zone *z = &l->zones[zone];
+    if (z->oldest_test == TEST_NONE) return;
+    resolve_all(g); // groups in flight name entries
+    while (z->oldest_test != TEST_NONE) drop_oldest(&g->tests, z);
+}
+
 void renderer_forget_tests(renderer *g)
 {
-    test_queue *q = &g->tests;
-    for (uint32_t i = 0; i < q->count; ++i) {
-        test_batch *b = queue_place(q, i);
-        if (b->fence) glDeleteSync(b->fence);
-        b->fence = NULL;
-    }
-    q->first = q->count = 0;
+    for (render_layout *l = g->layouts; l; l = l->next)
+        for (uint32_t zone = 0; zone < l->zone_count; ++zone) tests_forget_zone(g, l, zone);
 }
 
 void renderer_query_latency(renderer *g, uint32_t steps)
@@ -179,7 +264,7 @@ void renderer_query_latency(renderer *g, uint32_t steps)
 void tests_close(renderer *g)
 {
     test_queue *q = &g->tests;
-    for (uint32_t i = 0; i < q->capacity; ++i) batch_close(g, &q->batches[i]);
-    memory_free(g->memory, q->batches, q->capacity, sizeof *q->batches);
+    for (uint32_t i = 0; i < TEST_GROUPS; ++i) group_close(g, &q->groups[i]);
+    memory_free(g->memory, q->entries, q->capacity, sizeof *q->entries);
     *q = (test_queue){0};
 }

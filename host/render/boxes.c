@@ -83,13 +83,12 @@ static int is_outside(const viewpoint *v, const double low[3], const double high
     return reach(row, low, high, 1) < v->near_m * (1 - NEAR_MARGIN);
 }
 
-box_fate box_place(const viewpoint *v, const cull_box *box, eye_box *out)
+box_fate box_place(const viewpoint *v, const mover_box *box, eye_box *out)
 {
-    const double from[6] = {(double)box->min.x, (double)box->min.y, (double)box->min.z, (double)box->max.x, (double)box->max.y, (double)box->max.z};
     double low[3], high[3], distance2 = 0;
     for (int k = 0; k < 3; ++k) {
-        low[k] = from[k] - v->eye[k];
-        high[k] = from[k + 3] - v->eye[k];
+        low[k] = box->low[k] - v->eye[k];
+        high[k] = box->high[k] - v->eye[k];
         const double far = fmax(fabs(low[k]), fabs(high[k]));
         distance2 += far * far;
     }
@@ -110,22 +109,22 @@ void boxes_begin(renderer *g, const viewpoint *v, GLuint counts)
 {
     box_pass *b = &g->boxes;
     b->view = v;
+    b->counts = counts;
     b->staged_count = b->first_slot = 0;
-    b->program = program_find(g, PROGRAM_BOXES, 0);
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_COUNTS, counts);
-    if (!b->program) return;
-    state_program(g, b->program);
-    state_vertices(g, b->vertices);
-    state_pass(g, &(pass_state){GL_GEQUAL, DEPTH_OFF, COLOUR_OFF, BLEND_NONE, BACK_DRAWN, OFFSET_NEARER});
-    glProgramUniformMatrix4fv(b->program, AT_CLIP_FROM_EYE, 1, GL_FALSE, v->clip);
 }
 
 static void draw_staged(renderer *g)
 {
     box_pass *b = &g->boxes;
-    if (b->staged_count && b->program) {
+    const GLuint program = b->staged_count ? program_find(g, PROGRAM_BOXES, 0) : 0;
+    if (program) {
+        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_COUNTS, b->counts);
+        state_program(g, program);
+        state_vertices(g, b->vertices);
+        state_pass(g, &(pass_state){GL_GEQUAL, DEPTH_OFF, COLOUR_OFF, BLEND_NONE, BACK_DRAWN, OFFSET_NEARER});
+        glProgramUniformMatrix4fv(program, AT_CLIP_FROM_EYE, 1, GL_FALSE, b->view->clip);
+        glProgramUniform1ui(program, 1, b->first_slot);
         glNamedBufferSubData(b->corners, 0, (GLsizeiptr)(b->staged_count * CORNER_FLOATS * sizeof(float)), b->staged);
-        glProgramUniform1ui(b->program, 1, b->first_slot);
         glDrawElements(GL_TRIANGLES, (GLsizei)(b->staged_count * 36), GL_UNSIGNED_INT, NULL);
         g->frame.draw_calls++;
     }

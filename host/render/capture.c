@@ -3,28 +3,13 @@
 // Invariant: a capture that can't be taken leaves its slot empty, and showing an empty slot draws the items themselves.
 #include "gl.h"
 
+#include <assert.h>
 #include <math.h>
 
-static picture_slot *slot_find(renderer *g, uint32_t slot)
+static picture_slot *slot_find(const render_layout *l, uint32_t zone, uint32_t slot)
 {
-    if (slot >= SLOT_PAGE * SLOT_PAGES) return NULL;
-    picture_slot *page = g->pictures.pages[slot / SLOT_PAGE];
-    return page ? &page[slot % SLOT_PAGE] : NULL;
-}
-
-static picture_slot *slot_make(renderer *g, uint32_t slot)
-{
-    if (slot >= SLOT_PAGE * SLOT_PAGES) return NULL;
-    picture_slot **page = &g->pictures.pages[slot / SLOT_PAGE];
-    if (!*page) *page = memory_alloc_zeroed(g->memory, SLOT_PAGE, sizeof **page);
-    return *page ? &(*page)[slot % SLOT_PAGE] : NULL;
-}
-
-result pictures_reserve(renderer *g, uint32_t slots)
-{
-    for (uint32_t slot = 0; slot < slots && slot < SLOT_PAGE * SLOT_PAGES; slot += SLOT_PAGE)
-        if (!slot_make(g, slot)) return RESULT_NO_MEMORY;
-    return RESULT_OK;
+    if (zone >= l->zone_count || slot >= l->zones[zone].slot_count) return NULL;
+    return &l->slots[l->zones[zone].first_slot + slot];
 }
 
 static void slot_empty(renderer *g, picture_slot *s)
@@ -51,7 +36,7 @@ static GLuint texture(GLenum format, GLenum filter, uint32_t width_px, uint32_t 
 // Depth for a capture that keeps none: one texture, as large as was ever needed.
 static GLuint spare_depth(renderer *g, uint32_t width_px, uint32_t height_px)
 {
-    slot_store *p = &g->pictures;
+    picture_shared *p = &g->pictures;
     if (p->spare_depth && p->spare_width_px >= width_px && p->spare_height_px >= height_px) return p->spare_depth;
     glDeleteTextures(1, &p->spare_depth);
     if (width_px > p->spare_width_px) p->spare_width_px = width_px;
@@ -112,11 +97,10 @@ static int parallelogram_view(picture_slot *s, viewpoint *v)
     return 1;
 }
 
-static void set3(double out[3], cull_vec3 v)
+static void set3(double out[3], cull_vec3 v, const double offset[3])
 {
-    out[0] = (double)v.x;
-    out[1] = (double)v.y;
-    out[2] = (double)v.z;
+    const float from[3] = {v.x, v.y, v.z};
+    for (int k = 0; k < 3; ++k) out[k] = (double)from[k] + offset[k];
 }
 
 static void set_taken_uniforms(const picture_slot *s, const viewpoint *v, GLuint program)
@@ -158,77 +142,142 @@ static void show_slot(renderer *g, const picture_slot *s, const viewpoint *v)
     g->frame.draw_calls++;
 }
 
-static void draw_capture(renderer *g, picture_slot *s, const viewpoint *v, const render_layout *l, const cull_capture *c)
+// The capture's planes, relative to the eye; the rest holds everything.
+static void clip_planes(const cull_capture *c, const double eye_in_zone[3], GLfloat out[4][4])
+{
+    for (uint32_t i = 0; i < 4; ++i) {
+        const cull_plane none = {{0, 0, 0}, 1}, p = i < c->clip_plane_count ? c->clip_planes[i] : none;
+        const float normal[3] = {p.normal.x, p.normal.y, p.normal.z};
+        double offset = (double)p.offset;
+        for (int k = 0; k < 3; ++k) {
+            offset += (double)normal[k] * eye_in_zone[k];
+            out[i][k] = normal[k];
+        }
+        out[i][3] = (float)offset;
+    }
+}
+
+typedef struct capture_job {
+    const render_layout *layout;
+    const cull_capture *capture;
+    const viewpoint *view;
+    uint32_t zone;
+} capture_job;
+
+static void draw_geometry(renderer *g, const capture_job *j, const double offset[3])
+{
+    const cull_capture *c = j->capture;
+    double eye[3];
+    GLfloat planes[4][4];
+    if (c->run_count == 0) return;
+    for (int k = 0; k < 3; ++k) eye[k] = j->view->eye[k] - offset[k];
+    clip_planes(c, eye, planes);
+    const draw_pass pass = {.view = j->view, .planes = c->clip_plane_count ? (const GLfloat(*)[4])planes : NULL};
+    for (GLenum i = 0; pass.planes && i < 4; ++i) glEnable(GL_CLIP_DISTANCE0 + i);
+    frame_draw_runs(g, &pass, &(layout_runs){j->layout, j->zone, c->runs, c->run_count});
+    for (GLenum i = 0; pass.planes && i < 4; ++i) glDisable(GL_CLIP_DISTANCE0 + i);
+}
+
+static void draw_capture(renderer *g, const capture_job *j, const picture_slot *s, const double offset[3])
 {
     const GLfloat far = 0, none[4] = {0};
-    const uint32_t planes = c->clip_plane_count < 4 ? c->clip_plane_count : 4;
-    const draw_pass pass = {.view = v, .variant = planes ? VARIANT_CLIP : 0, .planes = c->clip_planes, .plane_count = planes};
     state_framebuffer(g, s->framebuffer, s->width_px, s->height_px);
     frame_state_pass(g, BLEND_NONE, DEPTH_ON);
     glClearBufferfv(GL_COLOR, 0, none);
     glClearBufferfv(GL_DEPTH, 0, &far);
-    for (GLenum i = 0; planes && i < 4; ++i) glEnable(GL_CLIP_DISTANCE0 + i);
-    if (c->run_count) frame_draw_runs(g, &pass, l, c->runs, c->run_count);
-    for (GLenum i = 0; planes && i < 4; ++i) glDisable(GL_CLIP_DISTANCE0 + i);
-    for (uint32_t i = 0; i < c->slot_count; ++i) {
-        const picture_slot *part = slot_find(g, c->slots[i]);
-        if (part && part != s && part->filled) show_slot(g, part, v);
+    draw_geometry(g, j, offset);
+    for (uint32_t i = 0; i < j->capture->slot_count; ++i) {
+        const picture_slot *part = slot_find(j->layout, j->zone, j->capture->slots[i]);
+        if (part && part != s && part->filled) show_slot(g, part, j->view);
     }
 }
 
-void renderer_capture(renderer *g, const render_layout *l, const cull_capture *capture)
+void renderer_capture(renderer *g, const render_layout *l, uint32_t zone, const cull_capture *capture)
 {
     if (!g->frame.open || g->frame.request.mode == RENDER_OVERDRAW) return; // layers are counted on geometry
-    picture_slot *s = slot_make(g, capture->slot);
+    picture_slot *s = slot_find(l, zone, capture->slot);
     if (!s) return;
+    frame_flush(g);
     s->filled = 0;
-    s->layout = g->frame.last_layout = l;
     viewpoint v = g->frame.view;
+    double offset[3];
+    const double nowhere[3] = {0, 0, 0};
     if (!slot_prepare(g, s, capture)) return;
-    s->layout = l; // preparing may have emptied it
-    set3(s->corner, capture->corner);
-    set3(s->right, capture->right);
-    set3(s->up, capture->up);
+    layout_zone_offset(g, zone, offset);
+    set3(s->corner, capture->corner, offset);
+    set3(s->right, capture->right, nowhere);
+    set3(s->up, capture->up, nowhere);
     for (int k = 0; k < 3; ++k) s->eye[k] = v.eye[k];
     if (!parallelogram_view(s, &v)) return;
-    draw_capture(g, s, &v, l, capture);
+    draw_capture(g, &(capture_job){l, capture, &v, zone}, s, offset);
     s->filled = 1;
     frame_bind(g);
     gl_check(g, NULL, "taking a picture");
 }
 
-void renderer_show(renderer *g, const cull_picture *picture)
+void renderer_show(renderer *g, const render_layout *l, uint32_t zone, const cull_picture *picture)
 {
+    assert(zone < l->zone_count);
     if (!g->frame.open) return;
-    const picture_slot *s = slot_find(g, picture->slot);
-    const render_layout *l = s && s->layout ? s->layout : g->frame.last_layout;
+    const picture_slot *s = slot_find(l, zone, picture->slot);
     if (!s || !s->filled || g->frame.request.mode == RENDER_OVERDRAW) {
-        if (l) renderer_draw(g, l, picture->runs, picture->run_count);
+        renderer_draw(g, l, zone, picture->runs, picture->run_count);
         return;
     }
+    const pixel_box cut = frame_cut(g, zone);
+    frame_flush(g);
+    frame_bind(g);
+    cut_begin(g, &cut);
     show_slot(g, s, &g->frame.view);
-    translucent_note(g, l, picture->runs, picture->run_count); // what is translucent is in no picture
+    cut_end(g, &cut);
+    translucent_note(g, &(layout_runs){l, zone, picture->runs, picture->run_count}); // what is translucent is in no picture
     gl_check(g, NULL, "showing a picture");
+}
+
+// ---- Room ----
+
+void pictures_forget_zone(renderer *g, render_layout *l, uint32_t zone)
+{
+    const layout_zone *z = &l->zones[zone];
+    for (uint32_t i = 0; i < z->slot_count; ++i) slot_empty(g, &l->slots[z->first_slot + i]);
 }
 
 void renderer_forget_pictures(renderer *g)
 {
-    for (uint32_t page = 0; page < SLOT_PAGES; ++page)
-        for (uint32_t i = 0; g->pictures.pages[page] && i < SLOT_PAGE; ++i) slot_empty(g, &g->pictures.pages[page][i]);
+    for (render_layout *l = g->layouts; l; l = l->next)
+        for (uint32_t i = 0; i < l->slot_count; ++i) slot_empty(g, &l->slots[i]);
 }
 
-void pictures_forget_layout(renderer *g, const render_layout *l)
+void pictures_close_layout(renderer *g, render_layout *l)
 {
-    for (uint32_t page = 0; page < SLOT_PAGES; ++page)
-        for (uint32_t i = 0; g->pictures.pages[page] && i < SLOT_PAGE; ++i)
-            if (g->pictures.pages[page][i].layout == l) slot_empty(g, &g->pictures.pages[page][i]);
+    for (uint32_t i = 0; i < l->slot_count; ++i) slot_empty(g, &l->slots[i]);
+    memory_free(g->memory, l->slots, l->slot_count, sizeof *l->slots);
+    l->slots = NULL;
+    l->slot_count = 0;
+}
+
+result render_layout_slots(render_layout *l, const uint32_t *slot_counts, report *r)
+{
+    renderer *g = l->g;
+    uint64_t total = 0;
+    for (uint32_t zone = 0; zone < l->zone_count; ++zone) total += slot_counts[zone];
+    if (total > SLOTS_MOST) return report_error(r, NULL, 0, "cullers ask for %llu pictures; %u is the most", (unsigned long long)total, (unsigned)SLOTS_MOST);
+    picture_slot *slots = total ? memory_alloc_zeroed(g->memory, (size_t)total, sizeof *slots) : NULL;
+    if (total && !slots) return report_no_memory(r, NULL);
+    pictures_close_layout(g, l);
+    l->slots = slots;
+    l->slot_count = (uint32_t)total;
+    for (uint32_t zone = 0, first = 0; zone < l->zone_count; ++zone) {
+        l->zones[zone].first_slot = first;
+        l->zones[zone].slot_count = slot_counts[zone];
+        first += slot_counts[zone];
+    }
+    return RESULT_OK;
 }
 
 void pictures_close(renderer *g)
 {
-    renderer_forget_pictures(g);
-    for (uint32_t page = 0; page < SLOT_PAGES; ++page) memory_free(g->memory, g->pictures.pages[page], SLOT_PAGE, sizeof **g->pictures.pages);
     glDeleteVertexArrays(1, &g->pictures.vertices);
     glDeleteTextures(1, &g->pictures.spare_depth);
-    g->pictures = (slot_store){0};
+    g->pictures = (picture_shared){0};
 }

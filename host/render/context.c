@@ -97,6 +97,7 @@ static result open_window(renderer *g, const renderer_options *o, report *r)
         glfwTerminate();
         return RESULT_NO_GL;
     }
+    window_listen(g);
     glfwMakeContextCurrent(g->window);
     glfwSwapInterval(1);
     return RESULT_OK;
@@ -183,6 +184,7 @@ result renderer_open(const renderer_options *o, const allocator *memory, report 
     result done = o && o->target == RENDERER_WINDOW ? open_window(g, o, r) : open_headless(g, r);
     if (done == RESULT_OK) done = prepare(g, r);
     if (done == RESULT_OK) done = boxes_open(g, r);
+    if (done == RESULT_OK) done = overlay_open(g, r);
     if (done != RESULT_OK) {
         renderer_close(g);
         return done;
@@ -206,6 +208,7 @@ void renderer_close(renderer *g)
         tests_close(g);
         scene_release(g);
         boxes_close(g);
+        overlay_close(g);
         targets_close(g);
         programs_close(g);
     }
@@ -235,11 +238,6 @@ int renderer_window_is_open(renderer *g)
     if (!g->window) return 0;
     glfwPollEvents();
     return !glfwWindowShouldClose(g->window);
-}
-
-struct GLFWwindow *renderer_window(renderer *g)
-{
-    return g->window;
 }
 
 void renderer_present(renderer *g)

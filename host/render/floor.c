@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "gl.h"
 
-#include <portcullis/box.h>
-
 #include <string.h>
 
 static void set_bit(uint32_t *bits, uint32_t i)
@@ -16,6 +14,7 @@ result renderer_floor(renderer *g, const camera *c, report *r, uint32_t *item_bi
     scene_gpu *p = &g->scene;
     const target *t = g->id_target;
     if (!p->scene || !t) return report_error(r, NULL, 0, "a floor without an id picture before it; draw one first");
+    frame_flush(g); // it stages boxes too
     viewpoint v;
     const viewpoint_request from = {.camera = c, .width_px = t->width_px, .height_px = t->height_px};
     const result seen = viewpoint_make(g, &from, r, &v);
@@ -28,7 +27,8 @@ result renderer_floor(renderer *g, const camera *c, report *r, uint32_t *item_bi
     boxes_begin(g, &v, p->counts);
     for (uint32_t i = 0; i < p->item_total; ++i) {
         eye_box widened;
-        const cull_box box = cull_box_at(&p->scene->boxes, i);
+        mover_box box;
+        item_box(g, i, &box);
         const box_fate fate = box_place(&v, &box, &widened);
         if (fate == BOX_NEAR) set_bit(item_bits, i);
         if (fate != BOX_TESTED) continue;

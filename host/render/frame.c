@@ -1,18 +1,12 @@
-// Frames for people: what a chain handed back, drawn from its layout, a draw call for each call of renderer_draw.
+// Frames for people: target, passes, reading back. What is drawn comes through draw.c.
 // SPDX-License-Identifier: MIT
-// Invariant: nothing here allocates; the tables were made with the layout.
+// Invariant: nothing here allocates; the room was taken with the layouts.
 #include "gl.h"
 
 #include <assert.h>
 
 static const float BACKGROUND[4] = {0.66f, 0.75f, 0.84f, 1}; // a hazy sky
 static const float TRANSLUCENT_ALPHA = 0.5f;
-
-uint32_t frame_variant(const renderer *g)
-{
-    const int by_fragment = g->frame.request.faces == FACES_FRONT && g->scene.has_two_sided;
-    return g->scene.variant | (by_fragment ? VARIANT_SIDES : 0);
-}
 
 void frame_state_pass(renderer *g, blend blend, depth_writes depth)
 {
@@ -23,24 +17,27 @@ void frame_state_pass(renderer *g, blend blend, depth_writes depth)
                                 culled && depth == DEPTH_ON ? BACK_CULLED : BACK_DRAWN, OFFSET_FARTHER});
 }
 
-void frame_uniforms(renderer *g, const draw_pass *p, GLuint program, uint32_t wanted)
+static uint32_t variant_of(const renderer *g, const draw_pass *p)
 {
-    const double near_m = g->frame.view.near_m;
-    const double far_m = 2 * scene_radius_m(g->scene.scene) + near_m * 2;
+    const int by_fragment = g->frame.request.faces == FACES_FRONT && g->scene.has_two_sided;
+    return g->scene.variant | (by_fragment ? VARIANT_SIDES : 0) | (p->planes ? VARIANT_CLIP : 0);
+}
+
+GLuint frame_pass(renderer *g, const draw_pass *p, uint32_t wanted)
+{
+    const render_mode mode = g->frame.request.mode;
+    const GLuint program = program_find(g, PROGRAM_SHADED + (program_kind)mode, variant_of(g, p));
+    if (!program) return 0;
+    state_program(g, program);
     viewpoint_set(p->view, program, wanted);
+    poses_use(g, p->view->eye);
     glProgramUniform1f(program, AT_ALPHA, wanted ? TRANSLUCENT_ALPHA : 1);
-    if (g->frame.request.mode == RENDER_DEPTH) glProgramUniform2f(program, AT_DEPTH_RANGE, (float)near_m, (float)far_m);
-    if (!(p->variant & VARIANT_CLIP)) return;
-    GLfloat planes[4][4];
-    for (uint32_t i = 0; i < 4; ++i) {
-        const cull_plane none = {{0, 0, 0}, 1}; // everything is inside
-        const cull_plane c = i < p->plane_count ? p->planes[i] : none;
-        planes[i][0] = c.normal.x;
-        planes[i][1] = c.normal.y;
-        planes[i][2] = c.normal.z;
-        planes[i][3] = c.offset;
+    if (mode == RENDER_DEPTH) {
+        const double near_m = g->frame.view.near_m, far_m = 2 * scene_radius_m(g->scene.scene) + near_m * 2;
+        glProgramUniform2f(program, AT_DEPTH_RANGE, (float)near_m, (float)far_m);
     }
-    glProgramUniform4fv(program, AT_CLIP_PLANES, 4, planes[0]);
+    if (p->planes) glProgramUniform4fv(program, AT_CLIP_PLANES, 4, p->planes[0]);
+    return program;
 }
 
 void frame_bind(renderer *g)
@@ -53,6 +50,7 @@ static void bind_blocks(renderer *g)
 {
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_MATERIALS, g->scene.materials);
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_ITEMS, g->scene.triangle_items);
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, BIND_ZONES, g->scene.item_zones);
 }
 
 static void clear(renderer *g)
@@ -67,6 +65,7 @@ result renderer_begin(renderer *g, const frame_request *q, report *r)
 {
     if (!g->scene.scene) return report_error(r, NULL, 0, "a frame without a scene; upload one first");
     frame_state *f = &g->frame;
+    frame_flush(g); // of a frame that nobody ended
     const viewpoint_request from = {.camera = q->camera, .width_px = q->width_px, .height_px = q->height_px};
     const result seen = viewpoint_make(g, &from, r, &f->view);
     if (seen != RESULT_OK) return seen;
@@ -78,49 +77,11 @@ result renderer_begin(renderer *g, const frame_request *q, report *r)
     f->request.camera = NULL; // the caller's, and maybe gone before the frame is
     f->draw_calls = f->state_changes = f->translucent_count = 0;
     f->open = 1;
+    f->number++;
     bind_blocks(g);
     frame_bind(g);
     clear(g);
     return gl_check(g, r, "beginning a frame");
-}
-
-result renderer_reserve(renderer *g, uint32_t tests_a_step, uint32_t slots, report *r)
-{
-    if (tests_reserve(g, tests_a_step) == RESULT_OK && pictures_reserve(g, slots) == RESULT_OK) return gl_check(g, r, "making room for box tests");
-    return report_no_memory(r, g->scene.scene ? g->scene.scene->path : NULL);
-}
-
-static void add_run(renderer *g, const render_layout *l, cull_run run)
-{
-    assert(run.count >= 1 && run.count <= l->total && run.first <= l->total - run.count);
-    const uint32_t first = l->first_index[run.first], end = l->first_index[run.first + run.count];
-    ranges *a = &g->scene.ranges;
-    if (ranges_add(a, first, end - first)) return;
-    ranges_draw(g, a); // more runs than items: someone repeats himself
-    ranges_add(a, first, end - first);
-}
-
-void frame_draw_runs(renderer *g, const draw_pass *p, const render_layout *l, const cull_run *runs, uint32_t run_count)
-{
-    const program_kind kind = PROGRAM_SHADED + (program_kind)g->frame.request.mode;
-    const GLuint program = program_find(g, kind, frame_variant(g) | p->variant);
-    if (!program) return;
-    state_program(g, program);
-    state_vertices(g, l->vertices);
-    frame_uniforms(g, p, program, 0);
-    frame_state_pass(g, BLEND_NONE, DEPTH_ON);
-    for (uint32_t i = 0; i < run_count; ++i) add_run(g, l, runs[i]);
-    ranges_draw(g, &g->scene.ranges);
-}
-
-void renderer_draw(renderer *g, const render_layout *l, const cull_run *runs, uint32_t run_count)
-{
-    assert(g->frame.open);
-    if (run_count == 0) return;
-    g->frame.last_layout = l;
-    frame_draw_runs(g, &(draw_pass){.view = &g->frame.view}, l, runs, run_count);
-    translucent_note(g, l, runs, run_count);
-    gl_check(g, NULL, "drawing");
 }
 
 // Layers counted to colours.
@@ -141,6 +102,7 @@ static void draw_heat(renderer *g)
 void renderer_end(renderer *g)
 {
     assert(g->frame.open);
+    frame_flush(g);
     translucent_draw(g);
     if (g->frame.request.mode == RENDER_OVERDRAW) draw_heat(g);
     g->frame.open = 0;

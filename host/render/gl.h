@@ -9,8 +9,6 @@
 
 #include <epoxy/egl.h>
 
-
-
 // ---- Programs (program.c) ----
 
 typedef enum program_kind {
@@ -24,6 +22,7 @@ typedef enum program_kind {
     PROGRAM_BOXES,
     PROGRAM_PICTURE,
     PROGRAM_HEAT,
+    PROGRAM_OVERLAY,
     PROGRAM_KINDS
 } program_kind;
 
@@ -33,7 +32,8 @@ enum { // what a program must know of the scene or the pass; compiled in, on fir
     VARIANT_SIDES = 1u << 2, // back faces of one-sided triangles dropped per fragment
     VARIANT_CLIP = 1u << 3,  // by up to four planes
     VARIANT_KEEP_DEPTH = 1u << 4,
-    VARIANTS = 1u << 5
+    VARIANT_MOVERS = 1u << 5, // vertices of movers go where their pose has them
+    VARIANTS = 1u << 6
 };
 
 enum { // vertex words: material below, then
@@ -47,6 +47,8 @@ enum { // storage buffer bindings
     BIND_COUNTS = 0,
     BIND_MATERIALS = 1,
     BIND_ITEMS = 2,
+    BIND_ZONES = 3,
+    BIND_POSES = 4,
 };
 
 enum { // uniform locations of scene.vert and frame.frag
@@ -122,29 +124,49 @@ typedef struct ranges {
 } ranges;
 
 result ranges_open(ranges *a, uint32_t capacity, const allocator *memory);
+result ranges_reserve(ranges *a, uint32_t capacity, const allocator *memory); // empty; nothing changed on failure
 void ranges_close(ranges *a, const allocator *memory);
 // Joined to the last when it follows it. 0: full, nothing changed.
 int ranges_add(ranges *a, uint32_t first_index, uint32_t index_count);
 void ranges_draw(renderer *g, ranges *a); // one draw call, then empty
+
+// ---- Where movers are (poses.c) ----
+
+typedef struct pose_block pose_block; // as the shaders have it
+typedef struct mover_box { double low[3], high[3]; } mover_box; // relative to the scene's origin
+typedef struct posed_movers {
+    scene_pose *poses;
+    mover_box *boxes;
+    pose_block *blocks;
+    GLuint buffer;
+    double eye[3];     // that the blocks are made for
+    uint32_t count, is_made; // is_made 0: a pose changed
+} posed_movers;
+
+result poses_open(posed_movers *m, const scene *s, const allocator *memory); // at rest
+void poses_close(posed_movers *m, const allocator *memory);
+void poses_use(renderer *g, const double eye[3]); // relative to the scene's origin: for the draws that follow
+void item_box(const renderer *g, uint32_t item, mover_box *out); // of any item, where it is
 
 // ---- The scene on the GPU (upload.c) ----
 
 typedef struct scene_gpu {
     const scene *scene; // NULL: none
     GLuint vertices;    // vertex array, with the index buffer in the scene's order
-    GLuint positions, words, triangles, texcoords, normals, others, elements;
-    GLuint materials, triangle_items, seen;
+    GLuint positions, words, triangles, texcoords, normals, others, movers, elements;
+    GLuint materials, triangle_items, item_zones, seen;
     uint32_t *indices;         // each triangle turned so that its last vertex is its own
     uint32_t *see_through;     // items with translucent triangles, ascending
     uint8_t *is_see_through;   // per item
     uint32_t see_through_count;
     uint32_t index_count, triangle_count, item_total; // movers too
-    uint32_t variant;          // VARIANT_CUT_OUT, VARIANT_TRANSLUCENT as the scene needs
+    uint32_t variant;          // VARIANT_CUT_OUT, VARIANT_TRANSLUCENT, VARIANT_MOVERS as the scene needs
     uint32_t has_two_sided;    // an opaque triangle of a two-sided item
     uint32_t *box_items;       // item_total: scratch of the floor
     uint32_t *box_counts;      // item_total: scratch of the floor
     GLuint counts;             // of the floor, item_total words
     ranges ranges;
+    posed_movers poses;
 } scene_gpu;
 
 void scene_release(renderer *g);
@@ -154,7 +176,7 @@ GLuint scene_vertex_array(const renderer *g, GLuint elements);
 // ---- Where it is seen from (viewpoint.c) ----
 
 typedef struct viewpoint {
-    double clip_from_eye[16], eye[3]; // column major; relative to the zone's origin
+    double clip_from_eye[16], eye[3]; // column major; relative to the scene's origin
     double near_m, pixels_per_tangent;
     float clip[16], eye_high[3], eye_low[3];
 } viewpoint;
@@ -174,7 +196,7 @@ void viewpoint_finish(viewpoint *v); // floats from the doubles
 typedef enum box_fate { BOX_OUTSIDE, BOX_NEAR, BOX_TESTED } box_fate;
 typedef struct eye_box { float low[3], high[3]; } eye_box; // relative to the eye, widened
 
-box_fate box_place(const viewpoint *v, const cull_box *box, eye_box *out);
+box_fate box_place(const viewpoint *v, const mover_box *box, eye_box *out);
 
 enum { BOX_CHUNK = 2048 };
 typedef struct box_pass {
@@ -182,45 +204,93 @@ typedef struct box_pass {
     float *staged; // BOX_CHUNK boxes of 8 corners
     uint32_t staged_count, first_slot;
     const viewpoint *view;
-    GLuint program;
-    uint32_t draw_calls;
+    GLuint counts;
 } box_pass;
 
 result boxes_open(renderer *g, report *r);
 void boxes_close(renderer *g);
-// Between begin and end: box number n since begin counts its fragments in word first_slot + n of `counts`, against the
-// depth of the framebuffer that is bound.
+// Between begin and end nothing else is drawn: box number n since begin counts its fragments in word n of `counts`,
+// against the depth of the framebuffer that is bound when boxes are added and at the end.
 void boxes_begin(renderer *g, const viewpoint *v, GLuint counts);
 void boxes_add(renderer *g, const eye_box *box);
 void boxes_end(renderer *g);
 
 // ---- Box tests in flight (box_tests.c) ----
 
-typedef struct test_batch {
-    GLuint counts;
-    GLsync fence; // NULL: nothing was drawn
-    uint32_t *tags, *slots; // slots: word of `counts`, or SLOT_HIDDEN, SLOT_SEEN
+enum { TEST_GROUPS = 16 };
+#define TEST_NONE UINT32_MAX
+
+typedef struct test_group { // drawn and read back at once, of any zones
+    GLuint counts;          // all 0 while nothing is in flight
+    GLsync fence;
+    uint32_t *entries;      // that each word of counts belongs to
     uint32_t *pixels;       // read back
-    uint32_t capacity, count, tested, taken, frame, is_read;
-    uint64_t asked; // number of the last collect before it
-} test_batch;
+    uint32_t capacity, count;
+} test_group;
+
+typedef struct test_entry {
+    uint32_t tag, frame, asked; // asked: the zone's collects before it
+    uint32_t pixels;            // or TEST_NONE: in flight
+    uint32_t next;              // of the zone, or of the free; TEST_NONE: the last
+} test_entry;
 
 typedef struct test_queue {
-    test_batch *batches; // a ring; places keep their buffers
-    uint32_t capacity, first, count;
-    uint64_t collects;
-    uint32_t latency;   // in calls of renderer_collect
+    test_group groups[TEST_GROUPS]; // a ring in the order of drawing; the one behind the last is being staged
+    uint32_t first, count, is_staging;
+    test_entry *entries;
+    uint32_t capacity, free;
+    uint32_t latency;   // in calls of renderer_collect for the zone
     uint32_t by_driver; // 1: ready when the fences say so, whatever the latency
 } test_queue;
 
 result tests_reserve(renderer *g, uint32_t tests_a_step);
+void tests_submit(renderer *g); // what is staged is drawn
+void tests_forget_zone(renderer *g, render_layout *l, uint32_t zone);
 void tests_close(renderer *g);
 
-// ---- Frames (frame.c, translucent.c) ----
+// ---- Layouts (layout.c) ----
+
+typedef struct layout_zone {
+    uint32_t first_place, count;
+    uint32_t first_slot, slot_count;           // in render_layout.slots
+    uint32_t oldest_test, newest_test, collects; // in test_queue.entries, or TEST_NONE
+} layout_zone;
+
+typedef struct picture_slot picture_slot;
+struct render_layout {
+    renderer *g;
+    render_layout *next; // of the renderer's
+    GLuint vertices, elements; // elements 0: the scene's own
+    layout_zone *zones;
+    uint32_t *items;       // at each place; NULL: as the scene stands
+    uint32_t *first_index; // of each place, movers behind; one more at the end
+    uint32_t *see_through; // places before this one that are; NULL: none is
+    picture_slot *slots;
+    uint32_t zone_count, place_count, total, slot_count; // total: places and movers
+};
+
+#define LAYOUT_MOVERS UINT32_MAX // in the place of a zone: what stands behind all zones
+
+uint32_t layout_item(const render_layout *l, uint32_t place); // global id, movers too
+uint32_t layout_first_place(const render_layout *l, uint32_t zone); // of a zone, or of the movers
+void layout_zone_offset(const renderer *g, uint32_t zone, double out[3]); // of the zone's origin from the scene's
+
+// ---- Frames (frame.c, draw.c, translucent.c) ----
+
+typedef struct pixel_box { GLint x, y, width, height; } pixel_box;
+typedef struct zone_cut { pixel_box box; uint32_t frame; } zone_cut; // counts in that frame only
+
+typedef struct layout_runs {
+    const render_layout *layout;
+    uint32_t zone; // or LAYOUT_MOVERS
+    const cull_run *runs;
+    uint32_t count;
+} layout_runs;
 
 typedef struct translucent_item {
     double distance2;
     const render_layout *layout;
+    pixel_box cut;
     uint32_t place, item; // item: global id, the same whatever the layout
 } translucent_item;
 
@@ -229,59 +299,72 @@ typedef struct frame_state {
     target *target;    // colours, in the end
     target *layers;    // RENDER_OVERDRAW
     frame_request request;
-    const render_layout *last_layout;
-    translucent_item *translucent; // see_through_count places
-    uint32_t translucent_count, translucent_capacity;
+    const render_layout *pending; // whose ranges wait in scene.ranges; NULL: none do
+    pixel_box pending_cut;
+    zone_cut *cuts; // by zone
+    translucent_item *translucent;
+    uint32_t cut_capacity, translucent_count, translucent_capacity;
+    uint32_t number; // of this frame
     uint32_t draw_calls, state_changes;
     uint32_t open; // between begin and end
 } frame_state;
 
-// A pass over runs, for frames and captures.
+// A pass over runs of a zone, for frames and captures.
 typedef struct draw_pass {
     const viewpoint *view;
-    uint32_t variant; // more than the scene's
-    const cull_plane *planes;
-    uint32_t plane_count;
+    const GLfloat (*planes)[4]; // four, relative to the eye; NULL: none
 } draw_pass;
 
-void frame_draw_runs(renderer *g, const draw_pass *p, const render_layout *l, const cull_run *runs, uint32_t run_count);
+result frame_reserve(renderer *g, uint32_t zones, uint32_t places, uint32_t translucent); // nothing changes on failure but what grew
+void frame_release(renderer *g);
 void frame_bind(renderer *g); // the frame's framebuffer
-void frame_uniforms(renderer *g, const draw_pass *p, GLuint program, uint32_t wanted);
-uint32_t frame_variant(const renderer *g);
+GLuint frame_pass(renderer *g, const draw_pass *p, uint32_t wanted); // its program and uniforms set; 0: there is none
 void frame_state_pass(renderer *g, blend blend, depth_writes depth);
-void translucent_note(renderer *g, const render_layout *l, const cull_run *runs, uint32_t run_count);
+void frame_flush(renderer *g); // draws and tests that wait are carried out
+void frame_draw_runs(renderer *g, const draw_pass *p, const layout_runs *r); // at once
+pixel_box frame_cut(const renderer *g, uint32_t zone);    // where the zone may draw; the whole picture when nothing cuts it
+void cut_begin(renderer *g, const pixel_box *cut);        // until the end the picture ends there
+void cut_end(renderer *g, const pixel_box *cut);
+void translucent_note(renderer *g, const layout_runs *r);
 void translucent_draw(renderer *g);
-
-struct render_layout {
-    renderer *g;
-    GLuint vertices, elements; // elements 0: the scene's own
-    uint32_t *order;           // NULL: as the scene stands
-    uint32_t *first_index;     // of each place, movers behind; one more at the end
-    uint32_t *see_through;     // places before this one that are; NULL: none is
-    uint32_t total, item_count; // places with and without movers
-};
 
 // ---- Pictures (capture.c) ----
 
-typedef struct picture_slot {
+struct picture_slot {
     GLuint framebuffer, colour, depth;
     uint32_t width_px, height_px, keep_depth, filled;
-    double corner[3], right[3], up[3], eye[3]; // relative to the zone's origin
+    double corner[3], right[3], up[3], eye[3]; // relative to the scene's origin
     double near_fraction; // distance of depth 1, in units of the parallelogram's
-    const render_layout *layout;
-} picture_slot;
+};
 
-enum { SLOT_PAGE = 64, SLOT_PAGES = 65536 / SLOT_PAGE };
-typedef struct slot_store {
-    picture_slot *pages[SLOT_PAGES];
+enum { SLOTS_MOST = 65536 };
+typedef struct picture_shared {
     GLuint vertices; // of a draw without attributes
     GLuint spare_depth; // for captures that keep none
     uint32_t spare_width_px, spare_height_px;
-} slot_store;
+} picture_shared;
 
-result pictures_reserve(renderer *g, uint32_t slots);
+void pictures_forget_zone(renderer *g, render_layout *l, uint32_t zone);
+void pictures_close_layout(renderer *g, render_layout *l);
 void pictures_close(renderer *g);
-void pictures_forget_layout(renderer *g, const render_layout *l);
+
+// ---- Overlay (overlay.c, font.c) ----
+
+typedef struct overlay_point { float position[3]; uint32_t colour; } overlay_point; // relative to the eye, or of the picture
+enum { OVERLAY_CHUNK = 6 * 1024, FONT_WIDE = 8, FONT_HIGH = 16 }; // points at a time: whole lines, triangles and rectangles
+typedef struct overlay_pass {
+    GLuint vertices, points;
+    overlay_point *staged; // OVERLAY_CHUNK
+    uint32_t count;
+} overlay_pass;
+
+result overlay_open(renderer *g, report *r);
+void overlay_close(renderer *g);
+uint32_t font_row(char letter, uint32_t row); // bit 0: leftmost of FONT_WIDE; letters that it lacks are a box
+
+// ---- The window's keys and mouse (window.c) ----
+
+void window_listen(renderer *g);
 
 // ---- The whole ----
 
@@ -291,6 +374,9 @@ struct renderer {
     EGLDisplay display;
     EGLContext context;
     struct GLFWwindow *window;
+    window_input input; // since the last renderer_window_input
+    double mouse_px[2];
+    uint32_t mouse_is_held;
     char name[192];
     uint32_t errors;
     uint32_t has_debug; // errors come through the callback; glGetError only clears them
@@ -303,7 +389,9 @@ struct renderer {
     box_pass boxes;
     test_queue tests;
     frame_state frame;
-    slot_store pictures;
+    render_layout *layouts;
+    picture_shared pictures;
+    overlay_pass overlay;
     target *id_target; // of the last id picture, while its depth is there
 };
 

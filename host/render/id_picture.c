@@ -62,6 +62,7 @@ static void draw_opaque(renderer *g, const viewpoint *v, const id_request *q)
     if (!program) return;
     state_program(g, program);
     viewpoint_set(v, program, 0);
+    poses_use(g, v->eye);
     state_pass(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, BACK_DRAWN, OFFSET_NONE});
     add_wanted(p, q->item_bits);
     ranges_draw(g, &p->ranges);
@@ -106,6 +107,7 @@ result renderer_id_picture(renderer *g, const id_request *q, report *r, id_pictu
     scene_gpu *p = &g->scene;
     if (!p->scene) return report_error(r, NULL, 0, "an id picture without a scene; upload one first");
     if (out->see_through_words != p->triangle_count / 32 + 1) return report_error(r, NULL, 0, "an id picture opened for another scene");
+    frame_flush(g); // it shares the ranges
     viewpoint v;
     const viewpoint_request from = {q->camera, out->width_px, out->height_px, {q->jitter_px[0], q->jitter_px[1]}};
     const result seen = viewpoint_make(g, &from, r, &v);

@@ -15,6 +15,16 @@ result ranges_open(ranges *a, uint32_t capacity, const allocator *memory)
     return RESULT_NO_MEMORY;
 }
 
+result ranges_reserve(ranges *a, uint32_t capacity, const allocator *memory)
+{
+    ranges more;
+    if (capacity <= a->capacity) return RESULT_OK;
+    if (ranges_open(&more, capacity, memory) != RESULT_OK) return RESULT_NO_MEMORY;
+    ranges_close(a, memory);
+    *a = more;
+    return RESULT_OK;
+}
+
 void ranges_close(ranges *a, const allocator *memory)
 {
     memory_free(memory, a->counts, a->capacity, sizeof *a->counts);

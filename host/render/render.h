@@ -24,6 +24,10 @@ const char *renderer_name(const renderer *g);  // GL_RENDERER and version, one l
 uint32_t renderer_errors(const renderer *g);   // GL errors seen so far (debug callback, checks); each was reported
 result renderer_upload(renderer *g, const scene *s, report *r); // one scene at a time, borrowed until the next or close
 
+// Where the scene's movers are in the pictures that follow, until the next call or upload (at rest after an upload). Not
+// within a frame: what is translucent is drawn at its end.
+void renderer_poses(renderer *g, const scene_pose *poses); // scene.mover_count
+
 // ---- Truth: ascending global id, one program, one vertex buffer ----
 // Depths err away from the eye by 1/128 pixel of slope, never behind a triangle's farthest corner: rounding to the raster's
 // grid lets no surface seen edge on poke through what hides it. Box tests err towards the eye, so they find every owner.
@@ -55,23 +59,36 @@ result renderer_floor(renderer *g, const camera *c, report *r, uint32_t *item_bi
 
 // ---- A frame drawn from visible sets ----
 
-// A chain's layout: index buffer in that order. order NULL: as the scene stands. order has scene.item_count places.
+// How the zones of a world lie in one index buffer: each zone's items in the order of its chain, an item as often as
+// zones list it.
 typedef struct render_layout render_layout;
-result render_layout_open(renderer *g, const uint32_t *order, report *r, render_layout **out);
+typedef struct render_layout_zone { const uint32_t *items; uint32_t count; } render_layout_zone; // global id at each place
+result render_layout_open(renderer *g, const render_layout_zone *zones, uint32_t zone_count, report *r, render_layout **out);
+// After a swap of the zone's chain, not within a frame: the same items in another order. Writes that zone's part only.
+// Pictures and tests of the zone are forgotten. RESULT_NO_MEMORY: nothing changed.
+result render_layout_reorder(render_layout *l, uint32_t zone, const uint32_t *items, report *r);
 void render_layout_close(render_layout *l); // NULL is fine; before the renderer
 
 typedef enum render_mode { RENDER_SHADED, RENDER_ITEMS, RENDER_ZONES, RENDER_DEPTH, RENDER_OVERDRAW } render_mode;
+
+typedef enum render_scissor { SCISSOR_NONE, SCISSOR_ZONES } render_scissor; // ZONES: what a zone draws is cut to its rectangle
 
 typedef struct frame_request {
     const camera *camera;
     uint32_t width_px, height_px;
     render_mode mode;
     faces faces;
+    render_scissor scissor;
 } frame_request;
 
 result renderer_begin(renderer *g, const frame_request *q, report *r); // target, clear
-// Runs of places in the layout's order, and of movers (item_count + slot). Opaque at once, translucent at renderer_end.
-void renderer_draw(renderer *g, const render_layout *l, const cull_run *runs, uint32_t run_count);
+// Runs of places in the zone's order. Opaque now or by the next call that needs it, translucent at renderer_end.
+void renderer_draw(renderer *g, const render_layout *l, uint32_t zone, const cull_run *runs, uint32_t run_count);
+void renderer_draw_movers(renderer *g, const render_layout *l, const uint32_t *movers, uint32_t count); // those at or over scene.mover_count have no geometry
+// Least x, least y, greatest x, greatest y in -1 .. 1, for what the zone draws from now on in this frame; with
+// SCISSOR_ZONES only. Cut a pixel wider. Where several zones list an item and one draws it for all, its rectangle must
+// hold theirs.
+void renderer_zone_rectangle(renderer *g, uint32_t zone, const float rectangle[4]);
 void renderer_end(renderer *g);    // translucent items of all runs drawn, then glFinish
 uint32_t renderer_draw_calls(const renderer *g);   // since renderer_begin
 uint32_t renderer_state_changes(const renderer *g);
@@ -79,22 +96,38 @@ result renderer_read(renderer *g, uint8_t *rgba, report *r); // width * height *
 
 // ---- What cullers ask for ----
 
-// Inside a frame. Issues box tests against the depth drawn so far; the boxes are the plugin's, widened here. At the near plane: seen.
-void renderer_test(renderer *g, const cull_test *tests, uint32_t count, uint32_t frame);
+// Inside a frame. Issues box tests against the depth drawn so far; the boxes are the plugin's, relative to the zone's
+// origin, widened here. At the near plane: seen.
+void renderer_test(renderer *g, const render_layout *l, uint32_t zone, const cull_test *tests, uint32_t count, uint32_t frame);
 typedef enum collect { COLLECT_READY, COLLECT_ALL } collect; // ALL waits
-// Takes answered tests out, oldest first, at most `capacity`. *stalled is set to 1 when it had to wait. age is now - asked.
-uint32_t renderer_collect(renderer *g, collect how, uint32_t frame, cull_answer *answers, uint32_t capacity, uint32_t *stalled);
+typedef struct collect_request { const render_layout *layout; uint32_t zone, frame; collect how; } collect_request;
+// Takes answered tests of that zone out, oldest first, at most `capacity`. *stalled is set to 1 when it had to wait. age is now - asked.
+uint32_t renderer_collect(renderer *g, const collect_request *q, cull_answer *answers, uint32_t capacity, uint32_t *stalled);
 void renderer_forget_tests(renderer *g);
 // From then on answers are ready by count, whatever the driver's clock does: a test is readable in the first call of
 // renderer_collect, plus `steps` (bench --query-latency). Never called: when the driver says so, for a viewer.
 void renderer_query_latency(renderer *g, uint32_t steps);
-// Takes all memory that frames need with at most so many tests between two calls of renderer_collect, and slots below
-// `slots`: such frames allocate nothing afterwards, but what the driver does. After renderer_query_latency, which says how
-// many tests wait at once. RESULT_NO_MEMORY with a line; what was taken stays until renderer_close.
-result renderer_reserve(renderer *g, uint32_t tests_a_step, uint32_t slots, report *r);
-void renderer_capture(renderer *g, const render_layout *l, const cull_capture *capture); // slot < 65,536
-void renderer_show(renderer *g, const cull_picture *picture);
+// Takes all memory that frames need when all zones together have at most so many tests asked between two calls of
+// renderer_collect for each of them: such frames allocate nothing afterwards, but what the driver does. After
+// renderer_query_latency, which says how many tests wait at once. RESULT_NO_MEMORY with a line; what was taken stays.
+result renderer_reserve(renderer *g, uint32_t tests_a_step, report *r);
+// Room for the pictures of a layout: slot_counts by zone, at most 65,536 together; none until then. A zone captures into
+// slots below its count; a capture that finds no slot is not taken, and showing it draws the items. Forgets what was there.
+result render_layout_slots(render_layout *l, const uint32_t *slot_counts, report *r);
+void renderer_capture(renderer *g, const render_layout *l, uint32_t zone, const cull_capture *capture);
+void renderer_show(renderer *g, const render_layout *l, uint32_t zone, const cull_picture *picture);
 void renderer_forget_pictures(renderer *g);
+
+// ---- Over the picture, for people: after renderer_end, before renderer_read or renderer_present ----
+
+typedef struct overlay_vertex { double position[3]; uint32_t colour; } overlay_vertex; // world; 0xAABBGGRR
+// Pairs of vertices are lines, threes triangles. Drawn with the frame's camera; TESTED hides what the picture's depth hides.
+typedef enum overlay_depth { OVERLAY_TESTED, OVERLAY_ON_TOP } overlay_depth;
+void renderer_overlay_lines(renderer *g, const overlay_vertex *vertices, uint32_t count, overlay_depth depth);
+void renderer_overlay_triangles(renderer *g, const overlay_vertex *vertices, uint32_t count, overlay_depth depth);
+// ASCII text in a built-in fixed font, 8 x 16 pixels a letter times `scale`, top left at (x_px, y_px) from the top left; \n breaks.
+typedef struct overlay_text { const char *text; uint32_t x_px, y_px, scale, colour; } overlay_text;
+void renderer_overlay_text(renderer *g, const overlay_text *t);
 
 // ---- Pictures to files ----
 
@@ -102,8 +135,16 @@ result png_write(const char *path, const uint8_t *rgba, uint32_t width_px, uint3
 
 // The window, for the viewer.
 int renderer_window_is_open(renderer *g); // polls events
-struct GLFWwindow;
-struct GLFWwindow *renderer_window(renderer *g); // for input; NULL when headless
+// Keys are lower-case letters, '+', '-', and KEY_* below.
+enum { KEY_LEFT = 1, KEY_RIGHT, KEY_UP, KEY_DOWN, KEY_ESCAPE, KEY_SHIFT, WINDOW_KEYS = 128, WINDOW_PRESSES_MOST = 16 };
+typedef struct window_input {
+    uint32_t width_px, height_px;     // of the window's picture; 0 while it is hidden
+    double drag_px[2];                // the mouse since the last call, to the right and up, while its left button is held
+    uint8_t held[WINDOW_KEYS];        // by key
+    char pressed[WINDOW_PRESSES_MOST]; // since the last call, in order
+    uint32_t pressed_count;
+} window_input;
+void renderer_window_input(renderer *g, window_input *out); // zero when headless
 void renderer_present(renderer *g);       // the frame's colours to the window
 
 #endif

@@ -4,31 +4,37 @@
 
 static double distance2_of(const renderer *g, uint32_t item)
 {
-    const scene *s = g->scene.scene;
-    const cull_boxes *b = &s->boxes;
-    const double centre[3] = {((double)b->min_x[item] + b->max_x[item]) / 2, ((double)b->min_y[item] + b->max_y[item]) / 2,
-                              ((double)b->min_z[item] + b->max_z[item]) / 2};
+    mover_box box;
     double sum = 0;
-    for (int k = 0; k < 3; ++k) sum += (centre[k] - g->frame.view.eye[k]) * (centre[k] - g->frame.view.eye[k]);
+    item_box(g, item, &box);
+    for (int k = 0; k < 3; ++k) {
+        const double away = (box.low[k] + box.high[k]) / 2 - g->frame.view.eye[k];
+        sum += away * away;
+    }
     return sum;
 }
 
-static void note(renderer *g, const render_layout *l, uint32_t place)
+static void note(renderer *g, const layout_runs *r, uint32_t place)
 {
     frame_state *f = &g->frame;
-    if (f->translucent_count == f->translucent_capacity) translucent_draw(g); // an item came twice
-    const uint32_t item = l->order && place < l->item_count ? l->order[place] : place;
-    f->translucent[f->translucent_count++] = (translucent_item){distance2_of(g, item), l, place, item};
+    if (f->translucent_count == f->translucent_capacity) { // an item came twice
+        frame_flush(g);
+        translucent_draw(g);
+    }
+    const uint32_t item = layout_item(r->layout, place);
+    f->translucent[f->translucent_count++] = (translucent_item){distance2_of(g, item), r->layout, frame_cut(g, r->zone), place, item};
 }
 
-void translucent_note(renderer *g, const render_layout *l, const cull_run *runs, uint32_t run_count)
+void translucent_note(renderer *g, const layout_runs *r)
 {
-    if (!l->see_through) return;
-    for (uint32_t i = 0; i < run_count; ++i) {
-        const uint32_t end = runs[i].first + runs[i].count;
-        if (l->see_through[runs[i].first] == l->see_through[end]) continue;
-        for (uint32_t place = runs[i].first; place < end; ++place)
-            if (l->see_through[place] != l->see_through[place + 1]) note(g, l, place);
+    const uint32_t *see_through = r->layout->see_through;
+    if (!see_through) return;
+    const uint32_t from = layout_first_place(r->layout, r->zone);
+    for (uint32_t i = 0; i < r->count; ++i) {
+        const uint32_t first = from + r->runs[i].first, end = first + r->runs[i].count;
+        if (see_through[first] == see_through[end]) continue;
+        for (uint32_t place = first; place < end; ++place)
+            if (see_through[place] != see_through[place + 1]) note(g, r, place);
     }
 }
 
@@ -61,25 +67,29 @@ static void sort(translucent_item *items, uint32_t count)
     }
 }
 
+static int share_a_draw(const translucent_item *a, const translucent_item *b)
+{
+    return a->layout == b->layout && a->cut.x == b->cut.x && a->cut.y == b->cut.y && a->cut.width == b->cut.width && a->cut.height == b->cut.height;
+}
+
 void translucent_draw(renderer *g)
 {
     frame_state *f = &g->frame;
+    ranges *a = &g->scene.ranges;
     if (f->translucent_count == 0) return;
-    const GLuint program = program_find(g, PROGRAM_SHADED + (program_kind)f->request.mode, frame_variant(g));
-    const draw_pass pass = {.view = &f->view};
     sort(f->translucent, f->translucent_count);
     frame_bind(g);
-    if (program) {
-        state_program(g, program);
-        frame_uniforms(g, &pass, program, WORD_TRANSLUCENT);
-        frame_state_pass(g, BLEND_MIX, DEPTH_OFF);
-    }
+    const GLuint program = frame_pass(g, &(draw_pass){.view = &f->view}, WORD_TRANSLUCENT);
+    if (program) frame_state_pass(g, BLEND_MIX, DEPTH_OFF);
     for (uint32_t i = 0; program && i < f->translucent_count; ++i) {
         const translucent_item *t = &f->translucent[i];
         const uint32_t first = t->layout->first_index[t->place];
+        ranges_add(a, first, t->layout->first_index[t->place + 1] - first);
+        if (i + 1 < f->translucent_count && share_a_draw(t, t + 1)) continue;
         state_vertices(g, t->layout->vertices);
-        ranges_add(&g->scene.ranges, first, t->layout->first_index[t->place + 1] - first);
-        if (i + 1 == f->translucent_count || t[1].layout != t->layout) ranges_draw(g, &g->scene.ranges);
+        cut_begin(g, &t->cut);
+        ranges_draw(g, a);
+        cut_end(g, &t->cut);
     }
     f->translucent_count = 0;
 }

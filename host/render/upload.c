@@ -81,12 +81,48 @@ static int own_last_vertex(upload *u, uint32_t triangle, uint32_t corners[3])
     return 1;
 }
 
+static result take_double(upload *u, uint32_t at, uint32_t *indices)
+{
+    const uint32_t v = indices[at], triangle = at / 3;
+    if (u->doubled.count >= UINT32_MAX - u->s->position_count) return RESULT_NO_MEMORY;
+    if (!buffer_append(&u->doubled, &v, 1) || !buffer_append(&u->doubled_owners, &triangle, 1)) return RESULT_NO_MEMORY;
+    if (at % 3 == 2) u->owners[v] = 0; // was this triangle's own
+    indices[at] = u->s->position_count + (uint32_t)(u->doubled.count - 1);
+    return RESULT_OK;
+}
+
 static result turn_triangles(upload *u, uint32_t *indices)
 {
     if (u->s->index_count) memcpy(indices, u->s->indices, u->s->index_count * sizeof *indices);
     for (uint32_t t = 0; t < u->s->index_count / 3; ++t)
         if (!own_last_vertex(u, t, indices + (size_t)3 * t)) return RESULT_NO_MEMORY;
     return RESULT_OK;
+}
+
+// A mover's vertices are its own, for they move: what it shares with another item is doubled.
+static result part_movers(upload *u, uint32_t *indices, const allocator *memory)
+{
+    static const uint32_t NOBODY = UINT32_MAX;
+    const scene *s = u->s;
+    if (s->mover_count == 0) return RESULT_OK;
+    uint32_t *claims = memory_alloc(memory, s->position_count, sizeof *claims); // mover + 1, 0: what never moves
+    if (!claims) return RESULT_NO_MEMORY;
+    for (uint32_t v = 0; v < s->position_count; ++v) claims[v] = NOBODY;
+    result done = RESULT_OK;
+    const uint32_t still = s->items[s->item_count].first_index;
+    for (uint32_t k = 0; k < still; ++k)
+        if (indices[k] < s->position_count) claims[indices[k]] = 0;
+    for (uint32_t m = 0; m < s->mover_count && done == RESULT_OK; ++m) {
+        const scene_item *item = &s->items[s->item_count + m];
+        for (uint32_t k = item->first_index; k < item->first_index + item->index_count && done == RESULT_OK; ++k) {
+            const uint32_t v = indices[k];
+            if (v >= s->position_count) continue; // doubled already
+            if (claims[v] == NOBODY) claims[v] = m + 1;
+            if (claims[v] != m + 1) done = take_double(u, k, indices);
+        }
+    }
+    memory_free(memory, claims, s->position_count, sizeof *claims);
+    return done;
 }
 
 static GLuint buffer_of(const void *bytes, size_t size) // bytes NULL: of undefined content
@@ -151,6 +187,27 @@ static GLuint triangles_of(upload *u, const allocator *memory)
     return name;
 }
 
+static GLuint movers_of(const upload *u, const uint32_t *indices, const allocator *memory)
+{
+    const scene *s = u->s;
+    const size_t count = s->position_count + u->doubled.count;
+    uint32_t *movers = memory_alloc_zeroed(memory, count, sizeof *movers); // mover + 1, 0: what never moves
+    if (!movers) return 0;
+    for (uint32_t m = 0; m < s->mover_count; ++m) {
+        const scene_item *item = &s->items[s->item_count + m];
+        for (uint32_t k = item->first_index; k < item->first_index + item->index_count; ++k) movers[indices[k]] = m + 1;
+    }
+    const GLuint name = buffer_of(movers, count * sizeof *movers);
+    memory_free(memory, movers, count, sizeof *movers);
+    return name;
+}
+
+static cull_vec3 position_of(const upload *u, uint32_t vertex)
+{
+    const uint32_t *doubled = u->doubled.items;
+    return u->s->positions[vertex < u->s->position_count ? vertex : doubled[vertex - u->s->position_count]];
+}
+
 // For each triangle's own vertex, where the other two are.
 static GLuint others_of(const upload *u, const uint32_t *indices, const allocator *memory)
 {
@@ -159,7 +216,7 @@ static GLuint others_of(const upload *u, const uint32_t *indices, const allocato
     pair *pairs = memory_alloc_zeroed(memory, count, sizeof *pairs);
     if (!pairs) return 0;
     for (size_t i = 0; i < u->s->index_count; i += 3)
-        pairs[indices[i + 2]] = (pair){u->s->positions[indices[i]], u->s->positions[indices[i + 1]]}; // only the third may be a doubled one
+        pairs[indices[i + 2]] = (pair){position_of(u, indices[i]), position_of(u, indices[i + 1])};
     const GLuint name = buffer_of(pairs, count * sizeof *pairs);
     memory_free(memory, pairs, count, sizeof *pairs);
     return name;
@@ -168,13 +225,15 @@ static GLuint others_of(const upload *u, const uint32_t *indices, const allocato
 static result upload_vertices(scene_gpu *p, upload *u, const allocator *memory)
 {
     const scene *s = u->s;
-    const result turned = turn_triangles(u, p->indices);
+    result turned = turn_triangles(u, p->indices);
+    if (turned == RESULT_OK) turned = part_movers(u, p->indices, memory);
     if (turned != RESULT_OK) return turned;
     p->positions = attribute_of(u, s->positions, sizeof *s->positions, memory);
     p->words = words_of(u, p->indices, memory);
     p->triangles = triangles_of(u, memory);
     p->others = others_of(u, p->indices, memory);
     if (!p->positions || !p->words || !p->triangles || !p->others) return RESULT_NO_MEMORY;
+    if (s->mover_count && !(p->movers = movers_of(u, p->indices, memory))) return RESULT_NO_MEMORY;
     if (s->texcoords && !(p->texcoords = attribute_of(u, s->texcoords, 2 * sizeof(float), memory))) return RESULT_NO_MEMORY;
     if (s->normals && !(p->normals = attribute_of(u, s->normals, sizeof(uint32_t), memory))) return RESULT_NO_MEMORY;
     p->elements = buffer_of(p->indices, s->index_count * sizeof(uint32_t));
@@ -218,6 +277,18 @@ static result upload_triangles(scene_gpu *p, const upload *u, const allocator *m
     return RESULT_OK;
 }
 
+// The first zone that lists an item, plus 1; 0: none does.
+static result upload_zones(scene_gpu *p, const scene *s, const allocator *memory)
+{
+    uint32_t *zones = memory_alloc_zeroed(memory, p->item_total, sizeof *zones);
+    if (!zones) return RESULT_NO_MEMORY;
+    for (uint32_t z = s->zone_count; z-- > 0;)
+        for (uint32_t i = 0; i < s->zones[z].item_count; ++i) zones[s->zone_items[s->zones[z].first_item + i]] = z + 1;
+    p->item_zones = buffer_of(zones, p->item_total * sizeof *zones);
+    memory_free(memory, zones, p->item_total, sizeof *zones);
+    return RESULT_OK;
+}
+
 static result reserve(renderer *g, scene_gpu *p)
 {
     const size_t total = p->item_total;
@@ -227,6 +298,8 @@ static result reserve(renderer *g, scene_gpu *p)
     p->box_items = memory_alloc(g->memory, total, sizeof *p->box_items);
     p->box_counts = memory_alloc_zeroed(g->memory, total, sizeof *p->box_counts);
     if (ranges_open(&p->ranges, p->item_total + 8, g->memory) != RESULT_OK) return RESULT_NO_MEMORY; // 8: ranges too long for one
+    if (poses_open(&p->poses, p->scene, g->memory) != RESULT_OK) return RESULT_NO_MEMORY;
+    if (p->scene->mover_count) p->variant |= VARIANT_MOVERS;
     return p->indices && p->see_through && p->is_see_through && p->box_items && p->box_counts ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
@@ -242,6 +315,7 @@ static result fill(renderer *g, scene_gpu *p, report *r)
     if (done == RESULT_OK) done = upload_vertices(p, &u, g->memory);
     if (done == RESULT_OK) done = upload_materials(p, p->scene, g->memory);
     if (done == RESULT_OK) done = upload_triangles(p, &u, g->memory);
+    if (done == RESULT_OK) done = upload_zones(p, p->scene, g->memory);
     upload_close(&u, g->memory);
     if (done == RESULT_NO_MEMORY) report_no_memory(r, p->scene->path);
     return done;
@@ -274,6 +348,10 @@ GLuint scene_vertex_array(const renderer *g, GLuint elements)
         attribute(name, 3, p->texcoords, 8);
         glVertexArrayAttribFormat(name, 3, 2, GL_FLOAT, GL_FALSE, 0);
     }
+    if (p->movers) {
+        attribute(name, 7, p->movers, 4);
+        glVertexArrayAttribIFormat(name, 7, 1, GL_UNSIGNED_INT, 0);
+    }
     if (p->normals) {
         attribute(name, 4, p->normals, 4);
         glVertexArrayAttribFormat(name, 4, 4, GL_BYTE, GL_TRUE, 0);
@@ -302,11 +380,6 @@ result renderer_upload(renderer *g, const scene *s, report *r)
     p->triangle_count = s->index_count / 3;
     p->item_total = s->item_count + s->mover_count;
     result done = fill(g, p, r);
-    if (done == RESULT_OK && p->see_through_count) {
-        g->frame.translucent = memory_alloc(g->memory, p->see_through_count, sizeof *g->frame.translucent);
-        g->frame.translucent_capacity = p->see_through_count;
-        if (!g->frame.translucent) done = report_no_memory(r, s->path);
-    }
     if (done == RESULT_OK) {
         p->vertices = scene_vertex_array(g, p->elements);
         done = gl_check(g, r, "uploading the scene");
@@ -319,8 +392,9 @@ void scene_release(renderer *g)
 {
     scene_gpu *p = &g->scene; // the scene itself may be gone already
     if (!p->scene) return;
-    const GLuint buffers[] = {p->positions, p->words, p->triangles, p->texcoords, p->normals, p->others, p->elements,
-                              p->materials, p->triangle_items, p->seen, p->counts};
+    frame_flush(g);
+    const GLuint buffers[] = {p->positions, p->words, p->triangles, p->texcoords, p->normals, p->others, p->movers,
+                              p->elements, p->materials, p->triangle_items, p->item_zones, p->seen, p->counts};
     glDeleteVertexArrays(1, &p->vertices);
     glDeleteBuffers((GLsizei)(sizeof buffers / sizeof *buffers), buffers);
     memory_free(g->memory, p->indices, p->index_count, sizeof *p->indices);
@@ -329,9 +403,8 @@ void scene_release(renderer *g)
     memory_free(g->memory, p->box_items, p->item_total, sizeof *p->box_items);
     memory_free(g->memory, p->box_counts, p->item_total, sizeof *p->box_counts);
     ranges_close(&p->ranges, g->memory);
-    memory_free(g->memory, g->frame.translucent, g->frame.translucent_capacity, sizeof *g->frame.translucent);
-    g->frame.translucent = NULL;
-    g->frame.translucent_capacity = g->frame.translucent_count = 0;
+    poses_close(&p->poses, g->memory);
+    frame_release(g);
     g->id_target = NULL; // its depth is of another scene
     *p = (scene_gpu){0};
     state_forget(g);

@@ -347,7 +347,7 @@ static void line_keep(void *user, report_level level, const char *words)
 static void wrong_wishes_are_refused_in_a_line_and_nothing_is_written(void **state)
 {
     static const struct { const char *kind; uint64_t size; const char *file, *says; } wishes[] = {
-        {"town", 5, "a.boxes", "city, swarm, rooms, demo"}, {"city", 0, "a.boxes", "1 to 10000000 boxes"},
+        {"town", 5, "a.boxes", "city, swarm, rooms, maze, house, demo, flagship"}, {"city", 0, "a.boxes", "1 to 10000000 boxes"},
         {"city", 10000001, "a.boxes", "not 10000001"},      {"swarm", 0, "a.boxes", "--size"},
         {"rooms", 0, "a.obj", "rooms, not 0"},              {"rooms", 100001, "a.obj", "1 to 100000"},
         {"demo", 3, "demo.obj", "leave --size out"},        {"city", 5, "a.obj", ".boxes"},

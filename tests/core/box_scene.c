@@ -8,9 +8,14 @@
 
 result box_scene_add(scene_builder *b, const double min[3], const double max[3], const char *name)
 {
+    static const double shut[3] = {0, 0, 0};
+    return box_scene_add_door(b, min, max, &(box_scene_door){name, shut});
+}
+
+result box_scene_add_door(scene_builder *b, const double min[3], const double max[3], const box_scene_door *door)
+{
     static const uint32_t faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     static const uint32_t polygon_triangles[6] = {2, 2, 2, 2, 2, 2};
-    static const double shut[3] = {0, 0, 0};
     builder_vertex vertices[8] = {0};
     for (uint32_t v = 0; v < 8; ++v)
         for (uint32_t k = 0; k < 3; ++k) vertices[v].position[k] = v >> k & 1 ? max[k] : min[k];
@@ -24,7 +29,7 @@ result box_scene_add(scene_builder *b, const double min[3], const double max[3],
             indices[used++] = first + faces[f][t + 1];
         }
     const builder_item item = {.indices = indices, .polygon_triangles = polygon_triangles, .index_count = 36, .polygon_count = 6, .flags = CULL_ITEM_BOX};
-    return name ? scene_builder_mover(b, name, shut, &item) : scene_builder_item(b, &item);
+    return door->name ? scene_builder_mover(b, door->name, door->open_offset, &item) : scene_builder_item(b, &item);
 }
 
 static double on_grid(double metres)

@@ -19,6 +19,9 @@ result box_scene_make(const box_scene *b, const allocator *memory, report *r, sc
 // One more box of 12 triangles in 6 polygons to a builder that has a material 0 and an object 0; name NULL: an item,
 // else a mover of that name.
 result box_scene_add(scene_builder *b, const double min[3], const double max[3], const char *name);
+// The same, open_offset metres from shut to open.
+typedef struct box_scene_door { const char *name; const double *open_offset; } box_scene_door;
+result box_scene_add_door(scene_builder *b, const double min[3], const double max[3], const box_scene_door *door);
 // At the scene's middle, looking along (cos yaw, 0, sin yaw).
 camera box_scene_camera(const box_scene *b, double yaw_deg);
 

@@ -127,7 +127,7 @@ static void a_chain_that_cannot_serve_is_refused_and_says_why(void **state)
     assert_refused("none+brute", "'brute' can only stand first");
     assert_refused("none+testcross+testcross-too", "'testcross-too' is the second crosser");
     assert_refused("none+testcross+testfilter+testcross", "'testcross' is the second crosser");
-    assert_refused("none+missing", "no culler 'missing'; found: none, brute, test");
+    assert_refused("none+missing", "no culler 'missing'; found: none, brute, flood, test");
     assert_refused("testpicture+testbad", "cullers 'testpicture' and 'testbad' both take pictures");
     assert_refused("testpicture+testfilter+testcross+testbad", "both take pictures");
     assert_refused("none[x=1]", "has no option 'x'; it has: none");

@@ -18,32 +18,43 @@ static void count_runs(uint32_t *times, const cull_run *runs, uint32_t run_count
     }
 }
 
-static void fake_draw(void *user, const cull_run *runs, uint32_t run_count)
+static void fake_draw(void *user, uint32_t zone, const cull_run *runs, uint32_t run_count)
 {
     fake_driver *f = user;
+    (void)zone;
     note(f, FAKE_DRAW);
     count_runs(f->drawn, runs, run_count);
 }
 
-static void fake_capture(void *user, const cull_capture *captures, uint32_t count)
+static void fake_draw_movers(void *user, const uint32_t *movers, uint32_t count)
 {
     fake_driver *f = user;
+    note(f, FAKE_DRAW_MOVERS);
+    for (uint32_t i = 0; i < count; ++i) count_runs(f->drawn, &(cull_run){f->mover_base + movers[i], 1}, 1);
+}
+
+static void fake_capture(void *user, uint32_t zone, const cull_capture *captures, uint32_t count)
+{
+    fake_driver *f = user;
+    (void)zone;
     note(f, FAKE_CAPTURE);
     f->captures += count;
     f->last_slot = captures[count - 1].slot;
 }
 
-static void fake_show(void *user, const cull_picture *pictures, uint32_t count)
+static void fake_show(void *user, uint32_t zone, const cull_picture *pictures, uint32_t count)
 {
     fake_driver *f = user;
+    (void)zone;
     note(f, FAKE_SHOW);
     f->shows += count;
     for (uint32_t i = 0; i < count; ++i) count_runs(f->shown, pictures[i].runs, pictures[i].run_count);
 }
 
-static void fake_test(void *user, const cull_test *tests, uint32_t count, uint32_t frame)
+static void fake_test(void *user, uint32_t zone, const cull_test *tests, uint32_t count, uint32_t frame)
 {
     fake_driver *f = user;
+    (void)zone;
     note(f, FAKE_TEST);
     f->tests += count;
     for (uint32_t i = 0; i < count; ++i) {
@@ -53,9 +64,11 @@ static void fake_test(void *user, const cull_test *tests, uint32_t count, uint32
     }
 }
 
-static uint32_t fake_collect(void *user, collect_how how, uint32_t frame, cull_answer *answers, uint32_t capacity, uint32_t *stalled)
+static uint32_t fake_collect(void *user, uint32_t zone, collect_how how, uint32_t frame, cull_answer *answers, uint32_t capacity,
+                             uint32_t *stalled)
 {
     fake_driver *f = user;
+    (void)zone;
     uint32_t got = 0, left = 0;
     note(f, how == COLLECT_EVERYTHING ? FAKE_COLLECT_ALL : FAKE_COLLECT_READY);
     for (uint32_t i = 0; i < f->pending_count; ++i) {
@@ -85,5 +98,5 @@ void fake_driver_new_frame(fake_driver *f)
 
 frame_driver fake_driver_of(fake_driver *f)
 {
-    return (frame_driver){f, fake_draw, fake_capture, fake_show, fake_test, fake_collect};
+    return (frame_driver){f, fake_draw, fake_draw_movers, fake_capture, fake_show, fake_test, fake_collect};
 }

@@ -3,18 +3,19 @@
 #ifndef PORTCULLIS_TESTS_FAKE_DRIVER_H
 #define PORTCULLIS_TESTS_FAKE_DRIVER_H
 
-#include "host/core/frame.h"
+#include "host/core/visible.h"
 
 enum { FAKE_PLACES_MOST = 4096, FAKE_EVENTS_MOST = 256, FAKE_TESTS_MOST = 4096 };
 #define FAKE_NO_ANSWER UINT32_MAX
 
-typedef enum fake_event { FAKE_DRAW, FAKE_CAPTURE, FAKE_SHOW, FAKE_TEST, FAKE_COLLECT_READY, FAKE_COLLECT_ALL } fake_event;
+typedef enum fake_event { FAKE_DRAW, FAKE_DRAW_MOVERS, FAKE_CAPTURE, FAKE_SHOW, FAKE_TEST, FAKE_COLLECT_READY, FAKE_COLLECT_ALL } fake_event;
 
 typedef struct fake_pending {
     uint32_t tag, pixels, frame, collects_left;
 } fake_pending;
 
 typedef struct fake_driver {
+    uint32_t mover_base; // places of movers: behind the items
     uint32_t (*pixels_of)(const cull_test *test); // the rule; FAKE_NO_ANSWER: it never comes. NULL: everything is seen
     uint32_t latency;                             // collects before the one that finds an answer ready
     fake_event events[FAKE_EVENTS_MOST];

@@ -128,7 +128,8 @@ static void none_draws_all_items_and_the_movers_in_view(void **state)
     touched(&s, &v, wanted);
     session_set_by_item(&s, times);
     for (uint32_t i = 0; i < ALL; ++i) assert_int_equal(times[i], i < ITEMS ? 1 : wanted[i]);
-    assert_int_equal(s.set.run_count, 1);
+    assert_int_equal(s.set.zone_count, 1);
+    assert_int_equal(s.set.zones[0].run_count, 1);
     assert_stats_are_of_the_set(&s, times);
     session_close(&s);
 }
@@ -174,9 +175,13 @@ static void a_filter_that_takes_movers_decides_about_those_in_view(void **state)
         session_frame(&s, &v);
         touched(&s, &v, wanted);
         session_set_by_item(&s, times);
-        uint32_t lent = 0;
+        uint8_t lent[ALL] = {0};
+        const viewer *zone = s.view->zones[0];
+        const cull_mover *movers = zone->visit.movers;
+        for (uint32_t i = 0; i < zone->visit.mover_count; ++i) lent[movers[i].id] = i % 2 ? 1 : 2;
         for (uint32_t i = 0; i < ALL; ++i) {
-            const uint32_t kept = wanted[i] && (i < ITEMS || lent++ % 2 == 0); // every second of those that it is lent
+            if (i >= ITEMS) assert_int_equal(lent[i] != 0, wanted[i]);
+            const uint32_t kept = wanted[i] && (i < ITEMS || lent[i] == 2); // every second of those that it is lent
             assert_int_equal(times[i], kept);
             assert_int_equal(s.driver.drawn[i], kept); // by the filter's own batch, not again behind it
         }
@@ -250,17 +255,17 @@ static void viewers_of_one_chain_do_not_disturb_each_other(void **state)
     static session s;
     uint8_t wanted[ALL];
     uint32_t times[FAKE_PLACES_MOST];
-    viewer *viewers[2];
+    world_view *views[2];
     uint64_t random = 9;
     open_session(&s, "brute+testfilter[keep=all]");
-    viewers[0] = s.viewer;
-    assert_int_equal(viewer_open(s.chain, &s.services, VIEWER_CHECK_BOUNDS, &s.lines.report, &viewers[1]), RESULT_OK);
+    views[0] = s.view;
+    assert_int_equal(world_view_open(s.world, VIEWER_CHECK_BOUNDS, &s.lines.report, &views[1]), RESULT_OK);
     for (uint32_t view = 1; view <= VIEWS; ++view) {
         session_view v[2];
         visible_set sets[2];
         for (int k = 0; k < 2; ++k) {
             v[k] = random_view(&random, view);
-            s.viewer = viewers[k];
+            s.view = views[k];
             session_frame(&s, &v[k]);
             sets[k] = s.set;
         }
@@ -271,8 +276,8 @@ static void viewers_of_one_chain_do_not_disturb_each_other(void **state)
             for (uint32_t i = 0; i < ALL; ++i) assert_int_equal(times[i], wanted[i]);
         }
     }
-    s.viewer = viewers[0];
-    viewer_close(viewers[1]);
+    s.view = views[0];
+    world_view_close(views[1]);
     session_close(&s);
 }
 
@@ -303,26 +308,30 @@ static void burn(double ns)
 
 static const double BURNT_NS = 2e7; // a hundred times what a frame of this scene takes
 
-static void slow_draw(void *user, const cull_run *runs, uint32_t count)
+static void slow_draw(void *user, uint32_t zone, const cull_run *runs, uint32_t count)
 {
     (void)user;
+    (void)zone;
     (void)runs;
     (void)count;
     burn(BURNT_NS);
 }
 
-static void slow_test(void *user, const cull_test *tests, uint32_t count, uint32_t frame)
+static void slow_test(void *user, uint32_t zone, const cull_test *tests, uint32_t count, uint32_t frame)
 {
     (void)user;
+    (void)zone;
     (void)tests;
     (void)count;
     (void)frame;
     burn(BURNT_NS);
 }
 
-static uint32_t slow_collect(void *user, collect_how how, uint32_t frame, cull_answer *answers, uint32_t capacity, uint32_t *stalled)
+static uint32_t slow_collect(void *user, uint32_t zone, collect_how how, uint32_t frame, cull_answer *answers, uint32_t capacity,
+                             uint32_t *stalled)
 {
     (void)user;
+    (void)zone;
     (void)how;
     (void)frame;
     (void)answers;
@@ -341,7 +350,7 @@ static void the_driver_s_time_is_not_the_cullers(void **state)
     const frame_input input = {.camera = &c,
                                .frame = {.width_px = 64, .height_px = 64, .frame = 1, .purpose = CULL_VIEW_MAIN},
                                .driver = {.draw = slow_draw, .test = slow_test, .collect = slow_collect}};
-    frame_run(s.viewer, &input, NULL, &s.stats);
+    world_cull(s.view, &input, NULL, &s.stats);
     assert_true(s.stats.cull_ns > 0 && s.stats.cull_ns < BURNT_NS);
     assert_int_equal(s.stats.stalls, 2); // one at frame start, one at WAIT
     session_close(&s);

@@ -90,10 +90,78 @@ static void a_list_of_nothing_or_of_whole_pages_opens_and_closes(void **state)
         assert_null(l.items);
         failing_allocator_init(&a, 1);
         l = list_open(&a.memory, counts[i], 8);
-        assert_null(l.items);
+        assert_int_equal(l.items == NULL, counts[i] > 0); // a list of nothing takes nothing
+        assert_int_equal(a.calls > 0, counts[i] > 0);
         list_close(&l, &a.memory);
         assert_true(failing_allocator_is_clean(&a));
     }
+}
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+enum { IS_SANITIZED = 1 };
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+enum { IS_SANITIZED = 1 };
+#else
+enum { IS_SANITIZED = 0 };
+#endif
+#else
+enum { IS_SANITIZED = 0 };
+#endif
+
+// Each guarded list is two mappings of the few that the system gives.
+static void take_more_lists_than_there_are_mappings(const char *count)
+{
+    const long most = strtol(count, NULL, 10);
+    for (long i = 0; i < most; ++i) {
+        list l = list_open(allocator_heap(), 10, 8);
+        if (!l.items) _exit(1);
+        ((char *)l.items)[79] = 1;
+        if (l.block_size == l.size) _exit(2); // plain
+    }
+    _exit(3);
+}
+
+static int exit_of(void (*work)(const char *), const char *argument)
+{
+    fflush(NULL);
+    const pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) work(argument);
+    int status = 0;
+    assert_int_equal(waitpid(child, &status, 0), child);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+static void without_mappings_a_list_is_plain_memory(void **state)
+{
+    (void)state;
+    long most = 0;
+    if (IS_SANITIZED) {
+        print_message("lists without mappings are NOT tested: a sanitizer's own memory needs mappings\n");
+        skip();
+    }
+    FILE *f = fopen("/proc/sys/vm/max_map_count", "r");
+    if (!f || fscanf(f, "%ld", &most) != 1 || most > 100000) {
+        if (f) fclose(f);
+        print_message("lists without mappings are NOT tested: the system gives too many\n");
+        skip();
+    }
+    fclose(f);
+    assert_int_equal(exit_of(take_more_lists_than_there_are_mappings, "200000"), 2);
+}
+
+static void a_tail_of_a_shared_list_ends_at_the_guard_page_too(void **state)
+{
+    (void)state;
+    list l = list_open(allocator_heap(), 100, 8);
+    assert_ptr_equal((char *)list_tail(&l, 24) + 24, (char *)l.items + 800);
+    assert_ptr_equal(list_tail(&l, 800), l.items);
+    list_close(&l, allocator_heap());
+    l = list_open_as(LIST_PLAIN, allocator_heap(), 100, 8);
+    for (int i = 0; i < 800; ++i) assert_int_equal(((char *)l.items)[i], 0);
+    assert_int_equal(l.block_size, 800);
+    list_close(&l, allocator_heap());
 }
 
 int main(void)
@@ -102,6 +170,8 @@ int main(void)
         cmocka_unit_test(a_culler_that_writes_behind_the_end_is_stopped_there),
         cmocka_unit_test(a_culler_that_stays_within_is_not),
         cmocka_unit_test(every_byte_of_a_list_may_be_written_and_none_behind),
+        cmocka_unit_test(without_mappings_a_list_is_plain_memory),
+        cmocka_unit_test(a_tail_of_a_shared_list_ends_at_the_guard_page_too),
         cmocka_unit_test(a_list_of_nothing_or_of_whole_pages_opens_and_closes),
     };
     return cmocka_run_group_tests_name("core guard", tests, NULL, NULL);

@@ -12,7 +12,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { BUILTIN = 2 }; // none and brute
+enum { BUILTIN = 3 }; // none, brute and flood
 
 typedef struct fixture {
     failing_allocator memory;
@@ -184,7 +184,7 @@ static void a_missing_culler_s_line_lists_those_found(void **state)
     fixture *f = *state;
     open_at(f, (places){.folders = {TEST_PLUGINS}});
     assert_int_equal(find(f, "missing"), RESULT_BAD_INPUT);
-    assert_true(report_lines_is_one_with(&f->lines, "no culler 'missing'; found: none, brute, testbad, testcross, testcross-too, testfilter, testmore, testorder, testpicture."));
+    assert_true(report_lines_is_one_with(&f->lines, "no culler 'missing'; found: none, brute, flood, testbad, testcross, testcross-too, testfilter, testmore, testorder, testpicture"));
 }
 
 static void a_refused_culler_s_line_gives_the_reason(void **state)
@@ -201,7 +201,7 @@ static void a_missing_culler_s_line_names_what_was_refused(void **state)
     scratch_folder_write(&f->folder, "x.culler.so", "text", 4);
     open_at(f, (places){.folders = {f->folder.path}});
     assert_int_equal(find(f, "missing"), RESULT_BAD_INPUT);
-    assert_true(report_lines_is_one_with(&f->lines, "no culler 'missing'; found: none, brute; refused, see `portcullis plugins`: x.culler.so."));
+    assert_true(report_lines_is_one_with(&f->lines, "no culler 'missing'; found: none, brute, flood; refused, see `portcullis plugins`: x.culler.so."));
 }
 
 static void a_name_that_no_culler_can_have_is_refused_at_once(void **state)

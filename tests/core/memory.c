@@ -116,6 +116,23 @@ static void nothing_in_an_arena_moves_or_overlaps(void **state)
     assert_true(failing_allocator_is_clean(&a));
 }
 
+static void an_arena_of_little_takes_little_and_one_of_much_few_blocks(void **state)
+{
+    (void)state;
+    failing_allocator a;
+    failing_allocator_init(&a, 0);
+    arena small = arena_make(&a.memory), large = arena_make(&a.memory);
+    assert_non_null(arena_push(&small, 100, 1));
+    assert_int_equal(a.live_bytes, 1024);
+    const uint64_t calls = a.calls;
+    for (int i = 0; i < 16384; ++i) assert_non_null(arena_push(&large, 64, 1)); // 1 MiB
+    assert_in_range(a.calls - calls, 16, 24);
+    assert_true(a.live_bytes < 1300 * 1024);
+    arena_free(&small);
+    arena_free(&large);
+    assert_true(failing_allocator_is_clean(&a));
+}
+
 static void an_arena_refuses_sizes_that_overflow(void **state)
 {
     (void)state;
@@ -142,6 +159,7 @@ int main(void)
         cmocka_unit_test(a_buffer_keeps_its_items_while_it_grows),
         cmocka_unit_test(a_buffer_that_cannot_grow_stays_as_it_was),
         cmocka_unit_test(nothing_in_an_arena_moves_or_overlaps),
+        cmocka_unit_test(an_arena_of_little_takes_little_and_one_of_much_few_blocks),
         cmocka_unit_test(an_arena_refuses_sizes_that_overflow),
     };
     return cmocka_run_group_tests_name("core memory", tests, NULL, NULL);

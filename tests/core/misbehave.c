@@ -204,8 +204,8 @@ static void each_viewer_of_a_bad_culler_tells_of_it_once(void **state)
     for (uint32_t open = 1; open <= 2; ++open) {
         for (uint32_t frame = 1; frame <= 5; ++frame) session_frame(&s, &(session_view){.frame = frame});
         assert_int_equal(s.lines.count, open);
-        viewer_close(s.viewer);
-        assert_int_equal(viewer_open(s.chain, &s.services, q.checks, &s.lines.report, &s.viewer), RESULT_OK);
+        world_view_close(s.view);
+        assert_int_equal(world_view_open(s.world, q.checks, &s.lines.report, &s.view), RESULT_OK);
     }
     session_close(&s);
 }
@@ -221,7 +221,7 @@ static void without_a_driver_a_bad_culler_harms_nothing_either(void **state)
         assert_int_equal(session_open(&s, &q), RESULT_OK);
         const camera c = box_scene_camera(&q.boxes, 0);
         const frame_input input = {.camera = &c, .frame = {.width_px = 64, .height_px = 64, .frame = 1, .purpose = CULL_VIEW_MAIN}};
-        frame_run(s.viewer, &input, NULL, &s.stats);
+        world_cull(s.view, &input, NULL, &s.stats);
         assert_int_equal(s.stats.faults, 1);
         assert_int_equal(s.stats.items_drawn, 16);
         assert_int_equal(s.stats.movers_drawn, 3);

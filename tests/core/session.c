@@ -13,13 +13,13 @@ static result open_plugins(session *s)
     return loader_open(&o, &s->memory.memory, &s->lines.report, &s->plugins);
 }
 
-static result open_chain(session *s)
+static result open_world(session *s)
 {
     chain_spec spec;
     const result done = chain_parse(s->q.chain, &s->texts, &s->lines.report, &spec);
     if (done != RESULT_OK) return done;
-    const chain_request build = {&spec, s->scene, s->plugins, &s->services};
-    return chain_build(&build, &s->lines.report, &s->chain);
+    const world_request q = {.scene = s->scene, .plugins = s->plugins, .services = &s->services, .chain = &spec};
+    return world_open(&q, &s->lines.report, &s->world);
 }
 
 result session_open(session *s, const session_request *q)
@@ -33,15 +33,16 @@ result session_open(session *s, const session_request *q)
     s->texts = arena_make(&s->memory.memory);
     result done = box_scene_make(&q->boxes, &s->memory.memory, &s->lines.report, &s->scene);
     if (done == RESULT_OK) done = open_plugins(s);
-    if (done == RESULT_OK) done = open_chain(s);
-    if (done == RESULT_OK) done = viewer_open(s->chain, &s->services, q->checks, &s->lines.report, &s->viewer);
-    return done;
+    if (done == RESULT_OK) done = open_world(s);
+    if (done != RESULT_OK) return done;
+    s->chain = world_chain(s->world, 0);
+    s->driver.mover_base = s->scene->item_count;
+    return world_view_open(s->world, q->checks, &s->lines.report, &s->view);
 }
 
 void session_close(session *s)
 {
-    viewer_close(s->viewer);
-    chain_close(s->chain);
+    world_close(s->world); // its views too
     loader_close(s->plugins);
     scene_free(s->scene, &s->memory.memory);
     arena_free(&s->texts);
@@ -57,22 +58,27 @@ void session_frame(session *s, const session_view *v)
                                .frame = {.width_px = 640, .height_px = 360, .frame = v->frame, .purpose = CULL_VIEW_MAIN},
                                .driver = fake_driver_of(&s->driver)};
     fake_driver_new_frame(&s->driver);
-    frame_run(s->viewer, &input, &s->set, &s->stats);
+    world_cull(s->view, &input, &s->set, &s->stats);
 }
 
 static void count_run(const session *s, cull_run run, uint32_t *times)
 {
     for (uint32_t i = run.first; i < run.first + run.count; ++i) {
-        assert_true(i < s->scene->item_count + s->scene->mover_count);
-        times[i < s->scene->item_count && s->chain->order ? s->chain->order[i] : i]++;
+        assert_true(i < s->scene->item_count);
+        times[s->chain->order ? s->chain->order[i] : i]++;
     }
 }
 
 void session_set_by_item(const session *s, uint32_t *times)
 {
     memset(times, 0, FAKE_PLACES_MOST * sizeof *times);
-    for (uint32_t i = 0; i < s->set.run_count; ++i) count_run(s, s->set.runs[i], times);
-    for (uint32_t i = 0; i < s->set.mover_run_count; ++i) count_run(s, s->set.mover_runs[i], times);
+    assert_true(s->set.zone_count <= 1);
+    for (uint32_t i = 0; i < s->set.zone_count; ++i)
+        for (uint32_t r = 0; r < s->set.zones[i].run_count; ++r) count_run(s, s->set.zones[i].runs[r], times);
+    for (uint32_t i = 0; i < s->set.mover_count; ++i) {
+        assert_true(s->set.movers[i] < s->scene->mover_count);
+        times[s->scene->item_count + s->set.movers[i]]++;
+    }
 }
 
 void session_assert_whole(const session *s)

@@ -5,6 +5,7 @@
 
 #include "box_scene.h"
 #include "fake_driver.h"
+#include "host/core/world_parts.h"
 #include "tests/common/failing_allocator.h"
 #include "tests/common/report_lines.h"
 
@@ -23,8 +24,9 @@ typedef struct session {
     arena texts;
     scene *scene;
     loader *plugins;
-    chain *chain;
-    viewer *viewer;
+    world *world;       // of one zone
+    const chain *chain; // its; NULL: no items
+    world_view *view;
     fake_driver driver;
     visible_set set; // of the last frame
     frame_stats stats;

@@ -1,6 +1,5 @@
 // Tests of cullers that take several steps, ask box tests, and take and show pictures, with a driver that has no renderer.
 // SPDX-License-Identifier: MIT
-#include "host/core/viewer.h"
 #include "session.h"
 #include "tests/common/test.h"
 
@@ -91,6 +90,7 @@ static void waiting_gets_this_step_s_answers_past_any_number_of_old_ones(void **
         static session s;
         open_session(&s, "testmore[wait=1]");
         s.driver.pixels_of = third_are_hidden;
+        session_frame(&s, &(session_view){.frame = 1});
         for (uint32_t i = 0; i < old_counts[n]; ++i) s.driver.pending[i] = (fake_pending){HALF, 0, 1, 1}; // not ready before the wait
         s.driver.pending_count = old_counts[n];
         session_frame(&s, &(session_view){.frame = 2});
@@ -100,6 +100,23 @@ static void waiting_gets_this_step_s_answers_past_any_number_of_old_ones(void **
         assert_int_equal(s.driver.pending_count, 0);
         session_close(&s);
     }
+}
+
+static void answers_to_tests_older_than_the_query_are_no_answers_to_it(void **state)
+{
+    (void)state;
+    static session s;
+    open_session(&s, "testmore[wait=0]");
+    s.driver.pixels_of = third_are_hidden;
+    for (uint32_t i = 0; i < 40; ++i) s.driver.pending[i] = (fake_pending){HALF + i, 0, 2, 1}; // of the chain before a swap, say
+    s.driver.pending_count = 40;
+    session_frame(&s, &(session_view){.frame = 5});
+    const cull_visit *visit = &s.view->zones[0]->visit;
+    assert_int_equal(visit->answer_count, HALF);
+    for (uint32_t i = 0; i < HALF; ++i) assert_int_equal(visit->answers[i].age, 0);
+    assert_hidden_third_is_dropped(&s);
+    assert_int_equal(s.driver.pending_count, 0);
+    session_close(&s);
 }
 
 static void more_takes_what_is_ready_without_a_stall(void **state)
@@ -129,7 +146,7 @@ static void an_answer_of_an_earlier_frame_is_told_its_age_and_believed_by_no_one
         assert_int_equal(s.stats.limits_hit, 1);
         assert_int_equal(s.stats.items_drawn, ITEMS);
         assert_drawn_is_the_set(&s);
-        const cull_answer *answers = s.viewer->answers.items; // of the last collect: late ones came before, at frame start
+        const cull_answer *answers = s.view->zones[0]->answers.items; // of the last collect: late ones came before, at frame start
         if (frame > 1) assert_int_equal(answers[0].age, 1);
         assert_int_equal(s.driver.pending_count, HALF);
     }
@@ -157,10 +174,35 @@ static void without_a_driver_every_test_counts_as_seen(void **state)
     open_session(&s, "testmore[wait=1]");
     const camera c = box_scene_camera(&s.q.boxes, 0);
     const frame_input input = {.camera = &c, .frame = {.width_px = 64, .height_px = 64, .frame = 1, .purpose = CULL_VIEW_MAIN}};
-    frame_run(s.viewer, &input, &s.set, &s.stats);
+    world_cull(s.view, &input, &s.set, &s.stats);
     assert_int_equal(s.stats.items_drawn, ITEMS);
     assert_int_equal(s.stats.stalls, 0);
     session_close(&s);
+}
+
+// Nobody shows the pictures that stand for items, so the items have to be drawn.
+static void without_a_driver_no_item_is_lost_in_a_picture(void **state)
+{
+    (void)state;
+    static const char *const chains[] = {"testpicture[distance=0.5]", "testpicture[distance=0.5]+testfilter[keep=all]"};
+    for (int n = 0; n < 2; ++n)
+        for (int has_capture = 0; has_capture < 2; ++has_capture) {
+            static session s;
+            open_session(&s, chains[n]);
+            camera c = box_scene_camera(&s.q.boxes, 0);
+            c.eye[2] += 200; // from where the picture is taken
+            const frame_driver whole = fake_driver_of(&s.driver), half = {.user = &s.driver, .capture = has_capture ? whole.capture : NULL};
+            for (uint32_t frame = 1; frame < 4; ++frame) {
+                const frame_input input = {.camera = &c, .frame = {.width_px = 64, .height_px = 64, .frame = frame, .purpose = CULL_VIEW_MAIN}, .driver = half};
+                fake_driver_new_frame(&s.driver);
+                world_cull(s.view, &input, &s.set, &s.stats);
+                assert_int_equal(s.stats.items_drawn, ITEMS);
+                assert_int_equal(s.stats.faults, 0);
+                assert_int_equal(s.stats.pictures, 0);
+                if (frame == 1) assert_int_equal(s.stats.limits_hit, 1);
+            }
+            session_close(&s);
+        }
 }
 
 // ---- Pictures ----
@@ -211,7 +253,7 @@ static void a_picture_that_is_lost_is_drawn_as_geometry(void **state)
     static session s;
     open_session(&s, "testpicture");
     frame_at(&s, at_picture, 1);
-    s.viewer->slots[0] = 0; // a host may drop a picture at any frame
+    s.view->zones[0]->slots[0] = 0; // a host may drop a picture at any frame
     frame_at(&s, at_picture, 2);
     assert_half_is_shown(&s, 0);
     session_close(&s);
@@ -232,17 +274,17 @@ static void each_viewer_has_pictures_of_its_own(void **state)
 {
     (void)state;
     static session s;
-    viewer *other;
+    world_view *other;
     open_session(&s, "testpicture");
-    assert_int_equal(viewer_open(s.chain, &s.services, VIEWER_CHECK_ALL, &s.lines.report, &other), RESULT_OK);
+    assert_int_equal(world_view_open(s.world, VIEWER_CHECK_ALL, &s.lines.report, &other), RESULT_OK);
     frame_at(&s, at_picture, 1);
-    viewer *first = s.viewer;
-    s.viewer = other;
+    world_view *first = s.view;
+    s.view = other;
     frame_at(&s, near_picture, 1);
     assert_int_equal(s.stats.captures, 1);
     assert_half_is_shown(&s, 1);
-    s.viewer = first;
-    viewer_close(other);
+    s.view = first;
+    world_view_close(other);
     session_close(&s);
 }
 
@@ -270,7 +312,7 @@ static void a_filter_behind_a_picture_keeps_it_or_drops_it(void **state)
         assert_int_equal(s.stats.captures, 0);
         assert_int_equal(s.driver.captures + s.driver.shows, 0);
         assert_int_equal(s.stats.items_drawn, HALF);
-        assert_int_equal(s.viewer->slots[0], 0);
+        assert_int_equal(s.view->zones[0]->slots[0], 0);
         frame_at(&s, at_picture, 2); // never captured, so the select draws geometry
         assert_half_is_shown(&s, 0);
         session_close(&s);
@@ -344,8 +386,8 @@ static void without_a_capturing_driver_no_slot_is_filled(void **state)
     const camera c = box_scene_camera(&(box_scene){.at = {200, 0, 0}}, 0);
     for (uint32_t frame = 1; frame < 4; ++frame) {
         const frame_input input = {.camera = &c, .frame = {.width_px = 64, .height_px = 64, .frame = frame, .purpose = CULL_VIEW_MAIN}};
-        frame_run(s.viewer, &input, &s.set, &s.stats);
-        assert_int_equal(s.viewer->slots[0], 0);
+        world_cull(s.view, &input, &s.set, &s.stats);
+        assert_int_equal(s.view->zones[0]->slots[0], 0);
         assert_int_equal(s.stats.faults, 0);
         if (frame > 1) assert_int_equal(s.stats.items_drawn, ITEMS);
     }
@@ -358,9 +400,11 @@ int main(void)
         cmocka_unit_test(waiting_draws_first_then_tests_then_draws_what_was_seen),
         cmocka_unit_test(waiting_for_a_late_answer_is_a_stall_and_exact),
         cmocka_unit_test(waiting_gets_this_step_s_answers_past_any_number_of_old_ones),
+        cmocka_unit_test(answers_to_tests_older_than_the_query_are_no_answers_to_it),
         cmocka_unit_test(more_takes_what_is_ready_without_a_stall),
         cmocka_unit_test(an_answer_of_an_earlier_frame_is_told_its_age_and_believed_by_no_one),
         cmocka_unit_test(a_missing_answer_counts_as_seen),
+        cmocka_unit_test(without_a_driver_no_item_is_lost_in_a_picture),
         cmocka_unit_test(without_a_driver_every_test_counts_as_seen),
         cmocka_unit_test(a_picture_is_taken_once_and_shown_while_the_eye_stays_near),
         cmocka_unit_test(a_picture_that_is_lost_is_drawn_as_geometry),

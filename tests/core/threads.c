@@ -11,7 +11,7 @@ enum { THREADS = 2, FRAMES = 200, ITEMS = 64 };
 typedef struct worker {
     pthread_t thread;
     const session *s;
-    viewer *viewer;
+    world_view *view;
     uint32_t faults;
     uint64_t items_drawn;
 } worker;
@@ -30,7 +30,7 @@ static void *run_frames(void *argument)
         const camera c = box_scene_camera(&w->s->q.boxes, frame);
         const frame_input input = {.camera = &c, .frame = {.width_px = 64, .height_px = 64, .frame = frame, .purpose = CULL_VIEW_MAIN}};
         frame_stats stats;
-        frame_run(w->viewer, &input, NULL, &stats);
+        world_cull(w->view, &input, NULL, &stats);
         w->faults += stats.faults;
         w->items_drawn += stats.items_drawn;
     }
@@ -40,12 +40,12 @@ static void *run_frames(void *argument)
 static void run_threads(session *s, worker workers[THREADS])
 {
     for (int i = 0; i < THREADS; ++i) {
-        workers[i] = (worker){.s = s, .viewer = s->viewer};
-        if (i > 0) assert_int_equal(viewer_open(s->chain, &s->services, s->q.checks, &s->lines.report, &workers[i].viewer), RESULT_OK);
+        workers[i] = (worker){.s = s, .view = s->view};
+        if (i > 0) assert_int_equal(world_view_open(s->world, s->q.checks, &s->lines.report, &workers[i].view), RESULT_OK);
     }
     for (int i = 0; i < THREADS; ++i) assert_int_equal(pthread_create(&workers[i].thread, NULL, run_frames, &workers[i]), 0);
     for (int i = 0; i < THREADS; ++i) assert_int_equal(pthread_join(workers[i].thread, NULL), 0);
-    for (int i = 1; i < THREADS; ++i) viewer_close(workers[i].viewer);
+    for (int i = 1; i < THREADS; ++i) world_view_close(workers[i].view);
 }
 
 static void two_viewers_of_a_culler_that_logs_and_faults_lose_no_count(void **state)

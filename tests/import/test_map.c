@@ -318,6 +318,11 @@ static void doors_open_along_their_angle_by_their_size_less_the_lip(void **state
         const double expected[3] = {cases[c].x, cases[c].y, cases[c].z};
         assert_int_equal(open->mover_count, 1);
         assert_int_equal(open->position_count, shut->position_count);
+        assert_int_equal(open->door_count, 1);
+        assert_int_equal(open->movers[0].door, 0);
+        assert_int_equal(open->doors[0].mover, 0);
+        assert_int_equal(open->doors[0].at_rest, DOORS_OPEN);
+        assert_int_equal(shut->doors[0].at_rest, DOORS_SHUT);
         for (int k = 0; k < 3; ++k) {
             assert_true(open->movers[0].open_offset[k] == expected[k]);
             assert_true(shut->movers[0].open_offset[k] == expected[k]);

@@ -48,6 +48,13 @@ quad quad_reversed(quad q);
 void bed_scene(bed *b, const quad *quads, size_t count, const double offset[3]);
 void bed_mesh(bed *b, const double (*positions)[3], uint32_t position_count, const uint32_t *indices, uint32_t index_count, uint32_t item_indices);
 
+// side * side rooms of 4 x 4 m, 3 m high, from `corner` on along x and -z: a zone each, doorways between, closed outside.
+enum { ROOM_SIDE_M = 4, ROOM_HIGH_M = 3 };
+void bed_rooms(bed *b, uint32_t side, const double corner[3]);
+// A layout of the scene's zones, each in the order of its list, or turned round.
+typedef enum list_order { LIST_ORDER, LIST_REVERSED } list_order;
+render_layout *bed_zone_layout(bed *b, list_order order);
+
 camera camera_at(double x, double y, double z); // looks along -z, 90 degrees, square, near 1/16, no far plane
 // Drawn, checked; free with id_picture_free(&p, allocator_heap()).
 id_picture bed_ids(bed *b, const id_request *q, uint32_t width_px, uint32_t height_px);
@@ -57,6 +64,13 @@ uint32_t item_of_triangle(const scene *s, uint32_t triangle);
 
 uint32_t random_next(uint32_t *state);             // 32 bits
 double random_unit(uint32_t *state);               // [0, 1)
+
+// A layout of one zone with all items; order NULL: as the scene stands.
+result bed_layout(bed *b, const uint32_t *order, render_layout **out);
+// Places of such a layout, movers behind the items.
+void bed_draw(bed *b, const render_layout *l, const cull_run *runs, uint32_t run_count);
+// Answers of zone 0 of the bed's layout.
+uint32_t bed_collect(bed *b, collect how, uint32_t frame, cull_answer *answers, uint32_t capacity, uint32_t *stalled);
 
 // A frame of these runs, top row first; free with memory_free(allocator_heap(), rgba, w * h, 4).
 uint8_t *bed_frame(bed *b, const frame_request *q, const render_layout *l, const cull_run *runs, uint32_t run_count);

@@ -26,7 +26,7 @@ static void begin_with_wall(bed *b, const camera *c)
 {
     const frame_request q = {.camera = c, .width_px = SIDE, .height_px = SIDE};
     assert_int_equal(renderer_begin(b->g, &q, &b->r), RESULT_OK);
-    renderer_draw(b->g, b->l, &(cull_run){0, 1}, 1);
+    bed_draw(b, b->l, &(cull_run){0, 1}, 1);
 }
 
 static void a_wall(bed *b)
@@ -45,8 +45,8 @@ static void a_hidden_box_gets_0_and_a_visible_one_its_pixels(void **state)
     a_wall(b);
     five_tests(b, tests);
     begin_with_wall(b, &c);
-    renderer_test(b->g, tests, 5, 40);
-    assert_int_equal(renderer_collect(b->g, COLLECT_ALL, 42, answers, 8, &stalled), 5);
+    renderer_test(b->g, b->l, 0, tests, 5, 40);
+    assert_int_equal(bed_collect(b, COLLECT_ALL, 42, answers, 8, &stalled), 5);
     renderer_end(b->g);
     for (uint32_t i = 0; i < 5; ++i) {
         assert_int_equal(answers[i].tag, 100 + i);
@@ -70,10 +70,10 @@ static void tests_see_only_what_was_drawn_before_them(void **state)
     a_wall(b);
     five_tests(b, tests);
     assert_int_equal(renderer_begin(b->g, &q, &b->r), RESULT_OK);
-    renderer_test(b->g, &tests[1], 1, 1);
-    renderer_draw(b->g, b->l, &(cull_run){0, 1}, 1);
-    renderer_test(b->g, &tests[1], 1, 1);
-    assert_int_equal(renderer_collect(b->g, COLLECT_ALL, 1, answers, 2, &stalled), 2);
+    renderer_test(b->g, b->l, 0, &tests[1], 1, 1);
+    bed_draw(b, b->l, &(cull_run){0, 1}, 1);
+    renderer_test(b->g, b->l, 0, &tests[1], 1, 1);
+    assert_int_equal(bed_collect(b, COLLECT_ALL, 1, answers, 2, &stalled), 2);
     renderer_end(b->g);
     assert_true(answers[0].pixels > 0);
     assert_int_equal(answers[1].pixels, 0);
@@ -91,10 +91,10 @@ static void a_test_leaves_no_trace_in_the_picture(void **state)
     five_tests(b, tests);
     uint8_t *plain = bed_frame(b, &q, b->l, &all, 1), tested[SIDE * SIDE * 4];
     assert_int_equal(renderer_begin(b->g, &q, &b->r), RESULT_OK);
-    renderer_test(b->g, tests, 5, 1);
-    renderer_draw(b->g, b->l, &(cull_run){0, 1}, 1);
-    renderer_test(b->g, tests, 5, 1);
-    renderer_draw(b->g, b->l, &(cull_run){1, 1}, 1);
+    renderer_test(b->g, b->l, 0, tests, 5, 1);
+    bed_draw(b, b->l, &(cull_run){0, 1}, 1);
+    renderer_test(b->g, b->l, 0, tests, 5, 1);
+    bed_draw(b, b->l, &(cull_run){1, 1}, 1);
     renderer_end(b->g);
     assert_int_equal(renderer_read(b->g, tested, &b->r), RESULT_OK);
     assert_memory_equal(plain, tested, sizeof tested);
@@ -113,15 +113,15 @@ static void answers_come_oldest_first_in_parts_of_any_size(void **state)
     begin_with_wall(b, &c);
     for (uint32_t batch = 0; batch < 40; ++batch) { // more than the queue starts with
         for (uint32_t i = 0; i < 5; ++i) tests[i].tag = 5 * batch + i;
-        renderer_test(b->g, tests, 5, batch);
-        if (batch % 3 == 0 && renderer_collect(b->g, COLLECT_ALL, 50, &answer, 1, &stalled)) {
+        renderer_test(b->g, b->l, 0, tests, 5, batch);
+        if (batch % 3 == 0 && bed_collect(b, COLLECT_ALL, 50, &answer, 1, &stalled)) {
             assert_int_equal(answer.tag, next);
             assert_int_equal(answer.age, 50 - next / 5);
             assert_int_equal(answer.pixels > 0, next % 5 == 0 || next % 5 == 2);
             next++;
         }
     }
-    while (renderer_collect(b->g, COLLECT_ALL, 50, &answer, 1, &stalled)) assert_int_equal(answer.tag, next++);
+    while (bed_collect(b, COLLECT_ALL, 50, &answer, 1, &stalled)) assert_int_equal(answer.tag, next++);
     renderer_end(b->g);
     assert_int_equal(next, 200);
 }
@@ -137,18 +137,18 @@ static void a_latency_of_two_steps_is_two_steps(void **state)
     five_tests(b, tests);
     begin_with_wall(b, &c);
     renderer_query_latency(b->g, 0);
-    renderer_test(b->g, tests, 5, 1);
-    assert_int_equal(renderer_collect(b->g, COLLECT_READY, 1, answers, 8, &stalled), 5);
+    renderer_test(b->g, b->l, 0, tests, 5, 1);
+    assert_int_equal(bed_collect(b, COLLECT_READY, 1, answers, 8, &stalled), 5);
     renderer_query_latency(b->g, 2);
-    renderer_test(b->g, tests, 5, 1);
-    assert_int_equal(renderer_collect(b->g, COLLECT_READY, 1, answers, 8, &stalled), 0);
-    renderer_test(b->g, tests, 1, 2);
-    assert_int_equal(renderer_collect(b->g, COLLECT_READY, 2, answers, 8, &stalled), 0);
-    assert_int_equal(renderer_collect(b->g, COLLECT_READY, 3, answers, 8, &stalled), 5);
+    renderer_test(b->g, b->l, 0, tests, 5, 1);
+    assert_int_equal(bed_collect(b, COLLECT_READY, 1, answers, 8, &stalled), 0);
+    renderer_test(b->g, b->l, 0, tests, 1, 2);
+    assert_int_equal(bed_collect(b, COLLECT_READY, 2, answers, 8, &stalled), 0);
+    assert_int_equal(bed_collect(b, COLLECT_READY, 3, answers, 8, &stalled), 5);
     assert_int_equal(stalled, 0);
-    assert_int_equal(renderer_collect(b->g, COLLECT_READY, 4, answers, 8, &stalled), 1);
-    renderer_test(b->g, tests, 5, 5);
-    assert_int_equal(renderer_collect(b->g, COLLECT_ALL, 5, answers, 8, &stalled), 5); // had to wait
+    assert_int_equal(bed_collect(b, COLLECT_READY, 4, answers, 8, &stalled), 1);
+    renderer_test(b->g, b->l, 0, tests, 5, 5);
+    assert_int_equal(bed_collect(b, COLLECT_ALL, 5, answers, 8, &stalled), 5); // had to wait
     assert_int_equal(stalled, 1);
     renderer_end(b->g);
 }
@@ -163,11 +163,11 @@ static void forgotten_tests_are_never_answered(void **state)
     a_wall(b);
     five_tests(b, tests);
     begin_with_wall(b, &c);
-    renderer_test(b->g, tests, 5, 1);
+    renderer_test(b->g, b->l, 0, tests, 5, 1);
     renderer_forget_tests(b->g);
-    assert_int_equal(renderer_collect(b->g, COLLECT_ALL, 1, answers, 8, &stalled), 0);
-    renderer_test(b->g, tests, 2, 1);
-    assert_int_equal(renderer_collect(b->g, COLLECT_ALL, 1, answers, 8, &stalled), 2);
+    assert_int_equal(bed_collect(b, COLLECT_ALL, 1, answers, 8, &stalled), 0);
+    renderer_test(b->g, b->l, 0, tests, 2, 1);
+    assert_int_equal(bed_collect(b, COLLECT_ALL, 1, answers, 8, &stalled), 2);
     renderer_end(b->g);
 }
 
@@ -185,8 +185,8 @@ static void thousands_of_boxes_are_tested_at_once(void **state)
         tests[i] = (cull_test){.box = box_at(b, (double[3]){x, -0.5, z - 0.5}, (double[3]){x + 0.3, 0.5, z + 0.5}), .tag = i};
     }
     begin_with_wall(b, &c);
-    renderer_test(b->g, tests, MANY, 1);
-    assert_int_equal(renderer_collect(b->g, COLLECT_ALL, 1, answers, MANY, &stalled), MANY);
+    renderer_test(b->g, b->l, 0, tests, MANY, 1);
+    assert_int_equal(bed_collect(b, COLLECT_ALL, 1, answers, MANY, &stalled), MANY);
     renderer_end(b->g);
     for (uint32_t i = 0; i < MANY; ++i) {
         assert_int_equal(answers[i].tag, i);
@@ -267,9 +267,9 @@ static void box_tests_after_drawing_all_find_every_owner(void **state)
         for (uint32_t i = 0; i < QUADS; ++i)
             tests[i] = (cull_test){.box = {{x->min_x[i], x->min_y[i], x->min_z[i]}, {x->max_x[i], x->max_y[i], x->max_z[i]}}, .tag = i};
         assert_int_equal(renderer_begin(b->g, &q, &b->r), RESULT_OK);
-        renderer_draw(b->g, b->l, &(cull_run){0, QUADS}, 1);
-        renderer_test(b->g, tests, QUADS, 1);
-        assert_int_equal(renderer_collect(b->g, COLLECT_ALL, 1, answers, QUADS, &stalled), QUADS);
+        bed_draw(b, b->l, &(cull_run){0, QUADS}, 1);
+        renderer_test(b->g, b->l, 0, tests, QUADS, 1);
+        assert_int_equal(bed_collect(b, COLLECT_ALL, 1, answers, QUADS, &stalled), QUADS);
         renderer_end(b->g);
         for (uint32_t i = 0; i < 160 * 160; ++i)
             if (p.triangles[i]) assert_true(answers[(p.triangles[i] - 1) / 2].pixels > 0);

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SIDE = 128, QUADS = 60 };
+enum { SIDE = 128, QUADS = 60, SLOTS = 65536 };
 
 static void drop_pixels(uint8_t *rgba)
 {
@@ -45,6 +45,12 @@ static uint32_t pixels_that_differ(const uint8_t *a, const uint8_t *b)
     return count;
 }
 
+static void scene_with_slots(bed *b, const quad *quads, size_t count)
+{
+    bed_scene(b, quads, count, NULL);
+    assert_int_equal(render_layout_slots(b->l, &(uint32_t){SLOTS}, &b->r), RESULT_OK);
+}
+
 static void random_scene(bed *b, uint32_t seed)
 {
     static quad quads[QUADS];
@@ -52,16 +58,16 @@ static void random_scene(bed *b, uint32_t seed)
         const double x = 20 * random_unit(&seed) - 10, y = 20 * random_unit(&seed) - 10, z = -4 * random_unit(&seed) - 8;
         quads[i] = quad_at(z, x, y, x + 6 * random_unit(&seed) + 0.1, y + 6 * random_unit(&seed) + 0.1);
     }
-    bed_scene(b, quads, QUADS, NULL);
+    scene_with_slots(b, quads, QUADS);
 }
 
 static uint8_t *frame_with(bed *b, const frame_request *q, const cull_capture *capture, const cull_picture *picture, const cull_run *more)
 {
     uint8_t *rgba = memory_alloc(allocator_heap(), (size_t)SIDE * SIDE, 4);
     assert_int_equal(renderer_begin(b->g, q, &b->r), RESULT_OK);
-    if (capture) renderer_capture(b->g, b->l, capture);
-    if (picture) renderer_show(b->g, picture);
-    if (more) renderer_draw(b->g, b->l, more, 1);
+    if (capture) renderer_capture(b->g, b->l, 0, capture);
+    if (picture) renderer_show(b->g, b->l, 0, picture);
+    if (more) bed_draw(b, b->l, more, 1);
     renderer_end(b->g);
     assert_int_equal(renderer_read(b->g, rgba, &b->r), RESULT_OK);
     return rgba;
@@ -114,7 +120,7 @@ static void a_kept_depth_sorts_geometry_against_the_picture(void **state)
     // captured: near on the left, far on the right; then a wall in between. The parallelogram stands nearest of all.
     const quad quads[] = {quad_at(-6, -20, -20, 0, 20), quad_at(-12, 0, -20, 20, 20), quad_at(-9, -20, -20, 20, 20)};
     const cull_run captured = {0, 2}, wall = {2, 1}, all = {0, 3};
-    bed_scene(b, quads, 3, NULL);
+    scene_with_slots(b, quads, 3);
     uint8_t *plain = bed_frame(b, &q, b->l, &all, 1);
     cull_capture capture = whole_picture(b, &c, 4, &captured, 1);
     const cull_picture picture = {.slot = 7, .runs = &captured, .run_count = 1};
@@ -135,7 +141,7 @@ static void a_picture_has_holes_where_nothing_was(void **state)
     const frame_request q = request(&c);
     const quad quads[] = {quad_at(-8, -8, -8, 0, 8), quad_at(-20, -40, -40, 40, 40)};
     const cull_run front = {0, 1}, back = {1, 1}, all = {0, 2};
-    bed_scene(b, quads, 2, NULL);
+    scene_with_slots(b, quads, 2);
     uint8_t *plain = bed_frame(b, &q, b->l, &all, 1);
     const cull_capture capture = whole_picture(b, &c, 8, &front, 1);
     uint8_t *shown = frame_with(b, &q, &capture, &(cull_picture){.slot = 7, .runs = &front, .run_count = 1}, &back);
@@ -151,7 +157,7 @@ static void clip_planes_cut_what_is_captured(void **state)
     const frame_request q = request(&c);
     const quad quads[] = {quad_at(-8, -8, -8, 8, 8)};
     const cull_run all = {0, 1};
-    bed_scene(b, quads, 1, NULL);
+    scene_with_slots(b, quads, 1);
     cull_capture capture = whole_picture(b, &c, 8, &all, 1);
     capture.clip_plane_count = 2; // x > 0 and y > 0
     const float at[2] = {(float)b->s->whole.origin[0], (float)b->s->whole.origin[1]};
@@ -172,7 +178,7 @@ static void a_picture_can_be_made_of_pictures(void **state)
     const camera c = camera_at(0, 0, 0);
     const frame_request q = request(&c);
     const cull_run first = {0, QUADS / 2}, second = {QUADS / 2, QUADS - QUADS / 2}, all = {0, QUADS};
-    const uint32_t part = 70000 % 65536;
+    const uint32_t part = SLOTS - 1;
     uint8_t *rgba = memory_alloc(allocator_heap(), (size_t)SIDE * SIDE, 4);
     random_scene(b, 6);
     uint8_t *plain = bed_frame(b, &q, b->l, &all, 1);
@@ -182,9 +188,9 @@ static void a_picture_can_be_made_of_pictures(void **state)
     parent.slots = &part;
     parent.slot_count = 1;
     assert_int_equal(renderer_begin(b->g, &q, &b->r), RESULT_OK);
-    renderer_capture(b->g, b->l, &child);
-    renderer_capture(b->g, b->l, &parent);
-    renderer_show(b->g, &(cull_picture){.slot = 7, .runs = &all, .run_count = 1});
+    renderer_capture(b->g, b->l, 0, &child);
+    renderer_capture(b->g, b->l, 0, &parent);
+    renderer_show(b->g, b->l, 0, &(cull_picture){.slot = 7, .runs = &all, .run_count = 1});
     renderer_end(b->g);
     assert_int_equal(renderer_read(b->g, rgba, &b->r), RESULT_OK);
     assert_in_range(pixels_that_differ(plain, rgba), 0, SIDE * SIDE / 100);
@@ -236,9 +242,9 @@ static void a_capture_in_a_frame_leaves_the_frame_as_it_was(void **state)
     capture.width_px = 33; // a viewport of its own
     capture.height_px = 9;
     assert_int_equal(renderer_begin(b->g, &q, &b->r), RESULT_OK);
-    renderer_draw(b->g, b->l, &half, 1);
-    renderer_capture(b->g, b->l, &capture);
-    renderer_draw(b->g, b->l, &rest, 1);
+    bed_draw(b, b->l, &half, 1);
+    renderer_capture(b->g, b->l, 0, &capture);
+    bed_draw(b, b->l, &rest, 1);
     renderer_end(b->g);
     assert_int_equal(renderer_read(b->g, rgba, &b->r), RESULT_OK);
     assert_memory_equal(plain, rgba, SIDE * SIDE * 4);
@@ -255,7 +261,7 @@ static void translucent_items_of_a_picture_are_drawn_live(void **state)
     quads[1].material = "*water";
     quads[1].material_flags = MATERIAL_TRANSLUCENT;
     const cull_run all = {0, 2};
-    bed_scene(b, quads, 2, NULL);
+    scene_with_slots(b, quads, 2);
     uint8_t *plain = bed_frame(b, &q, b->l, &all, 1);
     cull_capture capture = whole_picture(b, &c, 9, &all, 1);
     capture.keep_depth = 1;

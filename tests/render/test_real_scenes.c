@@ -58,6 +58,23 @@ static void check_view(bed *b, walk *w, const camera *c, uint32_t *owned)
     id_picture_free(&alone, allocator_heap());
 }
 
+// Every mover somewhere else: turned about its pivot, and moved by up to a metre.
+static void move_all(bed *b)
+{
+    const uint32_t count = b->s->mover_count;
+    scene_pose *poses = memory_alloc(allocator_heap(), count, sizeof *poses);
+    uint32_t seed = 5;
+    assert_non_null(poses);
+    for (uint32_t i = 0; i < count; ++i) {
+        const double turn = 6 * random_unit(&seed), x = cos(turn), y = sin(turn);
+        poses[i] = (scene_pose){.rotation = {x, 0, y, 0, 1, 0, -y, 0, x}};
+        memcpy(poses[i].pivot, b->s->movers[i].pivot, sizeof poses[i].pivot);
+        for (int k = 0; k < 3; ++k) poses[i].offset[k] = 2 * random_unit(&seed) - 1;
+    }
+    renderer_poses(b->g, poses);
+    memory_free(allocator_heap(), poses, count, sizeof *poses);
+}
+
 static void check_scene(bed *b, const char *name)
 {
     const char *folder = getenv("PORTCULLIS_SCENES");
@@ -81,6 +98,11 @@ static void check_scene(bed *b, const char *name)
     uint32_t owned = 0;
     for (uint32_t i = 0; i < VIEWS; ++i) {
         const camera c = look_from(b->s, i);
+        check_view(b, &w, &c, &owned);
+    }
+    if (b->s->mover_count) move_all(b);
+    for (uint32_t i = 0; i < VIEWS / 2 && b->s->mover_count; ++i) {
+        const camera c = look_from(b->s, 2 * i);
         check_view(b, &w, &c, &owned);
     }
     assert_true(owned > VIEWS * 5);

@@ -70,7 +70,7 @@ static void scene_of(bed *b)
 // Everything that allocates, each allocation failing in turn. 1: a failure was met on the way.
 static int use_all(counting *c, const scene *s)
 {
-    static const uint32_t order[3] = {2, 0, 1};
+    static const uint32_t order[3] = {2, 0, 1}, other_order[3] = {1, 2, 0}, slots[1] = {5};
     report r = {0};
     renderer *g = NULL;
     render_layout *l = NULL;
@@ -84,16 +84,17 @@ static int use_all(counting *c, const scene *s)
     cull_answer answer;
     uint32_t stalled = 0;
     int failed = renderer_open(NULL, &c->memory, &r, &g) != RESULT_OK || renderer_upload(g, s, &r) != RESULT_OK ||
-                 render_layout_open(g, order, &r, &l) != RESULT_OK || id_picture_open(s, 32, 32, &c->memory, &p) != RESULT_OK ||
-                 renderer_id_picture(g, &(id_request){.camera = &eye}, &r, &p) != RESULT_OK || renderer_reserve(g, 1, 70, &r) != RESULT_OK ||
+                 render_layout_open(g, &(render_layout_zone){order, 3}, 1, &r, &l) != RESULT_OK ||
+                 render_layout_slots(l, slots, &r) != RESULT_OK || render_layout_reorder(l, 0, other_order, &r) != RESULT_OK || id_picture_open(s, 32, 32, &c->memory, &p) != RESULT_OK ||
+                 renderer_id_picture(g, &(id_request){.camera = &eye}, &r, &p) != RESULT_OK || renderer_reserve(g, 1, &r) != RESULT_OK ||
                  renderer_begin(g, &q, &r) != RESULT_OK;
     if (!failed) {
-        renderer_draw(g, l, &all, 1);
-        renderer_test(g, &test, 1, 1);
-        renderer_capture(g, l, &capture);
-        renderer_show(g, &picture);
+        renderer_draw(g, l, 0, &all, 1);
+        renderer_test(g, l, 0, &test, 1, 1);
+        renderer_capture(g, l, 0, &capture);
+        renderer_show(g, l, 0, &picture);
         renderer_end(g);
-        failed = renderer_collect(g, COLLECT_ALL, 1, &answer, 1, &stalled) != 1;
+        failed = renderer_collect(g, &(collect_request){l, 0, 1, COLLECT_ALL}, &answer, 1, &stalled) != 1;
         assert_int_equal(renderer_errors(g), 0);
     }
     render_layout_close(l);
@@ -157,7 +158,7 @@ static void calls_without_a_scene_are_refused(void **state)
     id_picture p = {0};
     uint8_t rgba[4];
     b->r.line = NULL;
-    assert_int_equal(render_layout_open(b->g, NULL, &b->r, &l), RESULT_BAD_INPUT);
+    assert_int_equal(render_layout_open(b->g, NULL, 0, &b->r, &l), RESULT_BAD_INPUT);
     assert_int_equal(renderer_id_picture(b->g, &(id_request){.camera = &c}, &b->r, &p), RESULT_BAD_INPUT);
     assert_int_equal(renderer_begin(b->g, &(frame_request){.camera = &c, .width_px = 8, .height_px = 8}, &b->r), RESULT_BAD_INPUT);
     assert_int_equal(renderer_read(b->g, rgba, &b->r), RESULT_BAD_INPUT);

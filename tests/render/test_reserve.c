@@ -40,17 +40,17 @@ static void run_frame(bed *b, const cull_test *tests, uint32_t frame)
     cull_answer answers[TESTS];
     uint32_t stalled = 0;
     assert_int_equal(renderer_begin(b->g, &q, &b->r), RESULT_OK);
-    renderer_draw(b->g, b->l, &all, 1);
+    bed_draw(b, b->l, &all, 1);
     for (uint32_t step = 0; step < STEPS; ++step) {
-        renderer_test(b->g, tests, TESTS - step, frame);
-        const uint32_t got = renderer_collect(b->g, COLLECT_READY, frame, answers, TESTS, &stalled);
+        renderer_test(b->g, b->l, 0, tests, TESTS - step, frame);
+        const uint32_t got = bed_collect(b, COLLECT_READY, frame, answers, TESTS, &stalled);
         assert_int_equal(got > 0, frame > 0 || step >= LATENCY);
     }
     for (uint32_t slot = frame % 3; slot < SLOTS; slot += 7) {
         const cull_capture capture = {.runs = &one, .run_count = 1, .corner = {-1, -1, -3}, .right = {2, 0, 0}, .up = {0, 2, 0}, .slot = slot, .width_px = 8, .height_px = 8};
         const cull_picture picture = {.runs = &one, .run_count = 1, .slot = slot};
-        renderer_capture(b->g, b->l, &capture);
-        renderer_show(b->g, &picture);
+        renderer_capture(b->g, b->l, 0, &capture);
+        renderer_show(b->g, b->l, 0, &picture);
     }
     renderer_end(b->g);
 }
@@ -62,11 +62,12 @@ static void frames_allocate_nothing_after_room_was_taken(void **state)
     translucent_quads(b, 1);
     tests_at(tests, TESTS, 2);
     renderer_query_latency(b->g, LATENCY);
-    assert_int_equal(renderer_reserve(b->g, TESTS, SLOTS, &b->r), RESULT_OK);
+    assert_int_equal(renderer_reserve(b->g, TESTS, &b->r), RESULT_OK);
+    assert_int_equal(render_layout_slots(b->l, &(uint32_t){SLOTS}, &b->r), RESULT_OK);
     const uint64_t before = b->memory.calls;
     for (uint32_t frame = 0; frame < FRAMES; ++frame) run_frame(b, tests, frame);
     assert_int_equal(b->memory.calls, before);
-    assert_int_equal(renderer_reserve(b->g, TESTS, SLOTS, &b->r), RESULT_OK); // there already
+    assert_int_equal(renderer_reserve(b->g, TESTS, &b->r), RESULT_OK); // there already
     assert_int_equal(b->memory.calls, before);
 }
 
@@ -81,13 +82,13 @@ static void room_taken_while_tests_wait_loses_no_answer(void **state)
     translucent_quads(b, 1);
     tests_at(tests, TESTS, 2);
     renderer_query_latency(b->g, 0);
-    assert_int_equal(renderer_reserve(b->g, 10, 0, &b->r), RESULT_OK);
+    assert_int_equal(renderer_reserve(b->g, 10, &b->r), RESULT_OK);
     assert_int_equal(renderer_begin(b->g, &q, &b->r), RESULT_OK);
-    renderer_test(b->g, tests, 10, 1);
+    renderer_test(b->g, b->l, 0, tests, 10, 1);
     renderer_query_latency(b->g, 40);
-    assert_int_equal(renderer_reserve(b->g, TESTS, SLOTS, &b->r), RESULT_OK);
-    renderer_test(b->g, tests, TESTS, 1);
-    assert_int_equal(renderer_collect(b->g, COLLECT_ALL, 1, answers, 2 * TESTS, &stalled), 10 + TESTS);
+    assert_int_equal(renderer_reserve(b->g, TESTS, &b->r), RESULT_OK);
+    renderer_test(b->g, b->l, 0, tests, TESTS, 1);
+    assert_int_equal(bed_collect(b, COLLECT_ALL, 1, answers, 2 * TESTS, &stalled), 10 + TESTS);
     renderer_end(b->g);
     for (uint32_t i = 0; i < 10 + TESTS; ++i) assert_int_equal(answers[i].tag, i < 10 ? i : i - 10);
 }
@@ -100,10 +101,10 @@ static void no_memory_for_the_room_is_told_once_and_leaks_nothing(void **state)
     for (uint64_t fail = 1;; ++fail) {
         const uint32_t errors = b->r.errors;
         b->memory.fail_at = b->memory.calls + fail;
-        const result done = renderer_reserve(b->g, (uint32_t)fail * TESTS, SLOTS, &b->r); // more each time, so that there is always something to take
+        const result done = renderer_reserve(b->g, (uint32_t)fail * TESTS, &b->r); // more each time, so that there is always something to take
         b->memory.fail_at = 0;
         if (done == RESULT_OK) {
-            assert_true(fail > 10);
+            assert_true(fail > 5);
             break;
         }
         assert_int_equal(done, RESULT_NO_MEMORY);
@@ -129,7 +130,7 @@ static void translucent_items_mix_the_same_in_every_order(void **state)
             order[k] = kept;
         }
         for (uint32_t i = 0; i < QUADS; ++i) runs[i] = (cull_run){QUADS - 1 - i, 1};
-        assert_int_equal(render_layout_open(b->g, order, &b->r, &l), RESULT_OK);
+        assert_int_equal(bed_layout(b, order, &l), RESULT_OK);
         uint8_t *got = bed_frame(b, &q, l, runs, QUADS);
         assert_memory_equal(got, wanted, (size_t)SIDE * SIDE * 4);
         memory_free(allocator_heap(), got, (size_t)SIDE * SIDE, 4);

@@ -18,10 +18,14 @@ static void a_frame_is_shown_in_a_window(void **state)
     const frame_request f = {.camera = &c, .width_px = 200, .height_px = 100, .mode = RENDER_ITEMS};
     counting_init(&b.memory);
     assert_int_equal(renderer_open(&o, &b.memory.memory, &b.r, &b.g), RESULT_OK);
-    assert_non_null(renderer_window(b.g));
     bed_scene(&b, &q, 1, NULL);
     for (int frame = 0; frame < 3; ++frame) {
+        window_input input;
         assert_int_equal(renderer_window_is_open(b.g), 1);
+        renderer_window_input(b.g, &input);
+        assert_int_equal(input.width_px, 200);
+        assert_int_equal(input.height_px, 100);
+        assert_int_equal(input.pressed_count, 0);
         uint8_t *rgba = bed_frame(&b, &f, b.l, &(cull_run){0, 1}, 1);
         assert_int_not_equal(rgba[0], 0);
         memory_free(allocator_heap(), rgba, 200 * 100, 4);

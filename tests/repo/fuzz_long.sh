@@ -20,7 +20,7 @@ for target in $targets; do
     kind=${target#fuzz_}
     corpus=$build/corpus/$kind
     mkdir -p "$corpus"
-    for file in "$root"/../shared/scenes/*/*."$kind"; do # the heads of real files; libFuzzer cuts and joins them
+    for file in "$root"/../shared/scenes/*/*."$kind" "$root"/scenes/*."$kind"; do # the heads of real files; libFuzzer cuts and joins them
         if [ -f "$file" ]; then head -c 6000 "$file" >"$corpus/$(basename "$file")"; fi
     done
     if "$build/bin/$target" -max_total_time="$seconds" -max_len=8192 -timeout=10 -rss_limit_mb=2048 -artifact_prefix="$build/$kind-" "$corpus" \

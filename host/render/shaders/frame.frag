@@ -9,8 +9,11 @@ in vec3 v_normal;
 #ifdef EYE_POSITION
 in vec3 v_eye;
 #endif
-#ifdef ITEMS
+#if defined(ITEMS) || defined(ZONES)
 layout(std430, binding = 2) readonly buffer item_block { uint triangle_items[]; };
+#endif
+#ifdef ZONES
+layout(std430, binding = 3) readonly buffer zone_block { uint item_zones[]; }; // the first that lists it, + 1; 0: none
 #endif
 
 vec3 hashed_colour(uint n)
@@ -44,7 +47,8 @@ void main()
 #elif defined(ITEMS)
     vec3 c = hashed_colour(triangle_items[v_triangle]);
 #elif defined(ZONES)
-    vec3 c = hashed_colour(17u) * (0.75 + 0.25 * normalize(cross(dFdx(v_eye), dFdy(v_eye))).y); // one zone so far
+    vec3 face = cross(dFdx(v_eye), dFdy(v_eye));
+    vec3 c = hashed_colour(16u + item_zones[triangle_items[v_triangle]]) * (0.75 + 0.25 * face.y / max(length(face), 1e-30));
 #elif defined(DEPTH)
     float far = log2(depth_range.y / depth_range.x);
     vec3 c = vec3(1.0 - clamp(log2(max(length(v_eye), 1e-30) / depth_range.x) / far, 0.0, 1.0));

@@ -1,13 +1,13 @@
 // Every triangle of the scene, whatever the picture: camera-relative position, reversed z.
 // Invariant: the same vertex gives the same bits in every program and every draw.
-layout(location = 0) in vec3 position;  // relative to the zone's origin
+layout(location = 0) in vec3 position;  // relative to the scene's origin
 layout(location = 1) in uint word;      // material in the low 16 bits, flags above
 layout(location = 2) in uint triangle;  // global number of the triangle that this vertex is the last of
 layout(location = 0) uniform mat4 clip_from_eye;
-layout(location = 1) uniform vec3 eye_high; // the eye relative to the zone's origin: float part ...
+layout(location = 1) uniform vec3 eye_high; // the eye relative to the scene's origin: float part ...
 layout(location = 2) uniform vec3 eye_low;  // ... and what float could not hold
 layout(location = 3) uniform uint wanted;   // 0 or WORD_TRANSLUCENT: which triangles this pass draws
-layout(location = 4) uniform vec4 clip_planes[4];
+layout(location = 4) uniform vec4 clip_planes[4]; // relative to the eye
 invariant gl_Position;
 
 flat out uint v_triangle;
@@ -25,6 +25,29 @@ out vec3 v_normal;
 #ifdef EYE_POSITION
 out vec3 v_eye;
 #endif
+#ifdef MOVERS
+layout(location = 7) in uint mover; // number + 1; 0: never moves
+struct pose_block { vec4 high, low, rows[3]; }; // poses.c says what they are
+layout(std430, binding = 4) readonly buffer poses_block { pose_block poses[]; };
+#endif
+
+vec3 from_eye_of(vec3 p)
+{
+    precise vec3 from_eye;
+#ifdef MOVERS
+    if (mover != 0u) {
+        vec4 low = poses[mover - 1u].low;
+        from_eye = (p - poses[mover - 1u].high.xyz) - low.xyz;
+        if (low.w == 0.0) return from_eye;
+        vec4 x = poses[mover - 1u].rows[0], y = poses[mover - 1u].rows[1], z = poses[mover - 1u].rows[2];
+        precise vec3 turned = vec3(dot(x.xyz, from_eye) + x.w, dot(y.xyz, from_eye) + y.w, dot(z.xyz, from_eye) + z.w);
+        return turned;
+    }
+#endif
+    from_eye = (p - eye_high) - eye_low;
+    return from_eye;
+}
+
 #ifdef FAR_DEPTH
 layout(location = 5) in vec3 other_a; // the triangle's other corners, where this vertex is its last
 layout(location = 6) in vec3 other_b;
@@ -35,7 +58,7 @@ float depth_of(vec4 clip)
 }
 vec4 clip_of(vec3 p)
 {
-    return clip_from_eye * vec4((p - eye_high) - eye_low, 1.0);
+    return clip_from_eye * vec4(from_eye_of(p), 1.0);
 }
 #endif
 #ifdef CLIP
@@ -44,7 +67,7 @@ out float gl_ClipDistance[4];
 
 void main()
 {
-    precise vec3 from_eye = (position - eye_high) - eye_low;
+    precise vec3 from_eye = from_eye_of(position);
     gl_Position = clip_from_eye * vec4(from_eye, 1.0);
 #ifdef TRANSLUCENT
     if ((word & WORD_TRANSLUCENT) != wanted) gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside: the whole triangle goes
@@ -61,11 +84,15 @@ void main()
 #endif
 #ifdef SHADED
     v_normal = normal.xyz;
+#ifdef MOVERS
+    if (mover != 0u && poses[mover - 1u].low.w != 0.0)
+        v_normal = vec3(dot(poses[mover - 1u].rows[0].xyz, normal.xyz), dot(poses[mover - 1u].rows[1].xyz, normal.xyz), dot(poses[mover - 1u].rows[2].xyz, normal.xyz));
+#endif
 #endif
 #ifdef EYE_POSITION
     v_eye = from_eye;
 #endif
 #ifdef CLIP
-    for (int i = 0; i < 4; ++i) gl_ClipDistance[i] = dot(clip_planes[i].xyz, position) + clip_planes[i].w;
+    for (int i = 0; i < 4; ++i) gl_ClipDistance[i] = dot(clip_planes[i].xyz, from_eye) + clip_planes[i].w;
 #endif
 }

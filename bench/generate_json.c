@@ -1,0 +1,181 @@
+// Writes a JSON scene: see generate_json.h.
+// SPDX-License-Identifier: MIT
+#include "generate_json.h"
+
+void json_open(json_writer *j, text_file *out, const char *name)
+{
+    *j = (json_writer){.out = out};
+    text_add(out, "{\n\"portcullis\": 1,\n\"name\": \"");
+    text_add(out, name);
+    text_add(out, "\"");
+}
+
+void json_close(json_writer *j)
+{
+    text_add(j->out, "\n}\n");
+}
+
+void json_list(json_writer *j, const char *key)
+{
+    text_add(j->out, ",\n\"");
+    text_add(j->out, key);
+    text_add(j->out, "\": [");
+    j->is_first = 1;
+}
+
+void json_list_end(json_writer *j)
+{
+    text_add(j->out, j->is_first ? "]" : "\n]");
+}
+
+void json_item(json_writer *j)
+{
+    text_add(j->out, j->is_first ? "\n" : ",\n");
+    j->is_first = 0;
+}
+
+void json_mesh(json_writer *j, const char *file)
+{
+    json_list(j, "meshes");
+    json_item(j);
+    text_add(j->out, "{\"file\": \"");
+    for (const char *c = file; *c; ++c) {
+        const char letter[2] = {*c, 0};
+        if (*c == '"' || *c == '\\') text_add(j->out, "\\");
+        text_add(j->out, letter);
+    }
+    text_add(j->out, "\"}");
+    json_list_end(j);
+}
+
+void json_place(text_file *out, place p)
+{
+    text_add(out, "[");
+    text_decimal(out, p.x, PLACE_DECIMALS);
+    text_add(out, ", ");
+    text_decimal(out, p.y, PLACE_DECIMALS);
+    text_add(out, ", ");
+    text_decimal(out, p.z, PLACE_DECIMALS);
+    text_add(out, "]");
+}
+
+void json_numbered(text_file *out, const char *kind, uint32_t number)
+{
+    text_add(out, "\"");
+    text_add(out, kind);
+    if (number != PLAN_OUTSIDE) {
+        text_add(out, "_");
+        text_count(out, number);
+    }
+    text_add(out, "\"");
+}
+
+void json_box(text_file *out, const block *b, const char *material)
+{
+    text_add(out, "{\"min\": ");
+    json_place(out, b->min);
+    text_add(out, ", \"max\": ");
+    json_place(out, b->max);
+    text_add(out, ", \"material\": \"");
+    text_add(out, material);
+    text_add(out, "\"}");
+}
+
+// ---- From a plan ----
+
+static void zone_name(text_file *out, const plan *p, uint32_t room)
+{
+    if (room == PLAN_OUTSIDE) json_numbered(out, "outside", PLAN_OUTSIDE);
+    else json_numbered(out, plan_room_at(p, room)->kind, plan_room_at(p, room)->number);
+}
+
+void json_zones(json_writer *j, const plan *p)
+{
+    json_list(j, "zones");
+    if (p->has_outside) {
+        json_item(j);
+        text_add(j->out, "{\"name\": \"outside\", \"chain\": \"frustum\"}");
+    }
+    for (uint32_t i = 0; i < plan_room_count(p) && !j->out->failed; ++i) {
+        const plan_room *r = plan_room_at(p, i);
+        json_item(j);
+        text_add(j->out, "{\"name\": ");
+        zone_name(j->out, p, i);
+        text_add(j->out, ", \"box\": [");
+        json_place(j->out, r->zone.min);
+        text_add(j->out, ", ");
+        json_place(j->out, r->zone.max);
+        text_add(j->out, "]");
+        if (p->has_outside) text_add(j->out, ", \"in\": \"outside\"");
+        if (r->chain) {
+            text_add(j->out, ", \"chain\": \"");
+            text_add(j->out, r->chain);
+            text_add(j->out, "\"");
+        }
+        text_add(j->out, "}");
+    }
+    json_list_end(j);
+}
+
+void json_portals(json_writer *j, const plan *p)
+{
+    json_list(j, "portals");
+    for (uint32_t i = 0; i < plan_hole_count(p) && !j->out->failed; ++i) {
+        const plan_hole *h = plan_hole_at(p, i);
+        place corners[4];
+        plan_hole_corners(h, corners);
+        json_item(j);
+        text_add(j->out, "{\"name\": ");
+        json_numbered(j->out, "portal", i);
+        text_add(j->out, ", \"zones\": [");
+        zone_name(j->out, p, h->rooms[0]);
+        text_add(j->out, ", ");
+        zone_name(j->out, p, h->rooms[1]);
+        text_add(j->out, "], \"points\": [");
+        for (int k = 0; k < 4; ++k) {
+            if (k) text_add(j->out, ", ");
+            json_place(j->out, corners[k]);
+        }
+        text_add(j->out, "]");
+        if (h->door != PLAN_GAP) {
+            text_add(j->out, ", \"door\": ");
+            json_numbered(j->out, "door", i);
+        }
+        text_add(j->out, "}");
+    }
+    json_list_end(j);
+}
+
+void json_doors(json_writer *j, const plan *p)
+{
+    json_list(j, "doors");
+    for (uint32_t i = 0; i < plan_hole_count(p) && !j->out->failed; ++i) {
+        const plan_hole *h = plan_hole_at(p, i);
+        if (h->door == PLAN_GAP) continue;
+        json_item(j);
+        text_add(j->out, "{\"name\": ");
+        json_numbered(j->out, "door", i);
+        text_add(j->out, h->door == PLAN_DOOR_OPEN ? ", \"open\": true, \"mover\": " : ", \"open\": false, \"mover\": ");
+        json_numbered(j->out, "leaf", i);
+        text_add(j->out, "}");
+    }
+    json_list_end(j);
+}
+
+void json_leaves(json_writer *j, const plan *p)
+{
+    for (uint32_t i = 0; i < plan_hole_count(p) && !j->out->failed; ++i) {
+        const plan_hole *h = plan_hole_at(p, i);
+        if (h->door == PLAN_GAP) continue;
+        const block leaf = plan_leaf(h);
+        const int along_z = h->side == SIDE_MIN_X || h->side == SIDE_MAX_X;
+        json_item(j);
+        text_add(j->out, "{\"name\": ");
+        json_numbered(j->out, "leaf", i);
+        text_add(j->out, ", \"box\": ");
+        json_box(j->out, &leaf, h->leaf);
+        text_add(j->out, ", \"open\": ");
+        json_place(j->out, along_z ? (place){0, 0, h->slide} : (place){h->slide, 0, 0});
+        text_add(j->out, "}");
+    }
+}

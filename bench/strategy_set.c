@@ -1,0 +1,85 @@
+// Strategies: the set D of a view by global id, its counts, what it misses.
+// SPDX-License-Identifier: MIT
+// Invariant: an item that several zones list stands once in D; one that the host gives twice is a repeat, a fault.
+#define _POSIX_C_SOURCE 200809L
+#include "strategy_parts.h"
+
+#include <time.h>
+
+double thread_cpu_ns(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec * 1e9 + (double)t.tv_nsec;
+}
+
+static void mark_item(strategy *s, uint32_t item)
+{
+    const uint32_t bit = 1u << (item % 32);
+    s->repeats += (s->drawn_bits[item / 32] & bit) != 0;
+    s->drawn_bits[item / 32] |= bit;
+}
+
+static void mark_run(strategy *s, const strategy_zone *z, cull_run run)
+{
+    const uint32_t *order = s->order + z->first;
+    if (z->is_identity)
+        for (uint32_t p = run.first; p < run.first + run.count; ++p) mark_item(s, p);
+    else
+        for (uint32_t p = run.first; p < run.first + run.count; ++p) mark_item(s, order[p]);
+}
+
+void set_mark(strategy *s, const visible_set *set)
+{
+    const scene *sc = s->q->scene;
+    for (uint32_t i = 0; i < set->zone_count; ++i)
+        for (uint32_t k = 0; k < set->zones[i].run_count; ++k) mark_run(s, &s->zones[set->zones[i].zone], set->zones[i].runs[k]);
+    for (uint32_t i = 0; i < set->mover_count; ++i) {
+        if (set->movers[i] < sc->mover_count) mark_item(s, sc->item_count + set->movers[i]);
+        else s->repeats++; // none of the scene's
+    }
+    for (uint32_t w = 0; s->has_pictures && w < s->words; ++w) s->drawn_bits[w] |= s->picture_bits[w];
+}
+
+double set_write_ids(strategy *s, const visible_set *set)
+{
+    const double start = thread_cpu_ns();
+    uint32_t *ids = s->ids;
+    for (uint32_t i = 0; i < set->zone_count; ++i) {
+        const strategy_zone *z = &s->zones[set->zones[i].zone];
+        ids += s->kernel->expand(set->zones[i].runs, set->zones[i].run_count, z->is_identity ? NULL : s->order + z->first, ids);
+    }
+    return thread_cpu_ns() - start;
+}
+
+view_counts strategy_count(const strategy *s, const visible_set *set)
+{
+    const scene *sc = s->q->scene;
+    view_counts c = {0};
+    for (uint32_t i = 0; i < set->zone_count; ++i) c.runs += set->zones[i].run_count;
+    for (uint32_t w = 0; w < s->words; ++w)
+        for (uint32_t bits = s->drawn_bits[w]; bits; bits &= bits - 1) {
+            const uint32_t id = w * 32 + (uint32_t)__builtin_ctz(bits);
+            c.triangles += sc->items[id].index_count / 3;
+            if (id >= sc->item_count) c.mover_polygons += sc->items[id].polygon_count;
+            else {
+                c.items++;
+                c.polygons += sc->items[id].polygon_count;
+            }
+        }
+    return c;
+}
+
+view_misses strategy_misses(const strategy *s, const truth *t, uint32_t view)
+{
+    const truth_view *v = (const truth_view *)t->views.items + view;
+    view_misses m = {0};
+    if (!v->count) return m; // of a whole path that sees nothing there is no list
+    const truth_item *items = (const truth_item *)t->items.items + v->first;
+    for (uint32_t i = 0; i < v->count; ++i) {
+        if (s->drawn_bits[items[i].item / 32] >> (items[i].item % 32) & 1) continue;
+        m.items++;
+        m.pixels += items[i].pixels;
+    }
+    return m;
+}

@@ -1,0 +1,282 @@
+// Flow: one view's way through the zones. Opening, where it starts, and the work list. See flow.h.
+// SPDX-License-Identifier: MIT
+// Invariant: a node is queued at most once at a time, so the ring holds them all.
+#include "flow_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+// ---- Opening ----
+
+static double hulls_height(const scene *s, const scene_zone *z, const double p[3])
+{
+    double height = INFINITY;
+    for (uint32_t i = 0; i < z->hull_count; i++) {
+        const double above = scene_hull_height(s, z->first_hull + i, p);
+        if (above < height) height = above;
+    }
+    return z->hull_count > 0 ? larger(height, 0) : 0;
+}
+
+static void gate_make(flow *f, uint32_t portal)
+{
+    const scene_portal *p = &f->scene->portals[portal];
+    flow_gate *g = &f->gates[portal];
+    const double(*points)[3] = (const double(*)[3]) & f->scene->portal_points[p->first_point];
+    memcpy(g->low, points[0], sizeof g->low);
+    memcpy(g->high, points[0], sizeof g->high);
+    g->bend = 0;
+    for (uint32_t i = 1; i < p->point_count; i++) {
+        double above = 0;
+        for (int k = 0; k < 3; k++) {
+            if (points[i][k] < g->low[k]) g->low[k] = points[i][k];
+            if (points[i][k] > g->high[k]) g->high[k] = points[i][k];
+            above += p->plane[k] * (points[i][k] - points[0][k]);
+        }
+        g->bend = larger(g->bend, fabs(above));
+    }
+    for (int side = 0; side < 2; side++) {
+        double *out = &f->sticking_out[p->zones[side]];
+        for (uint32_t i = 0; i < p->point_count; i++) *out = larger(*out, hulls_height(f->scene, &f->scene->zones[p->zones[side]], points[i]));
+        *out = larger(*out, g->bend);
+    }
+}
+
+static void places_make(flow *f, const zone_data *zones)
+{
+    for (uint32_t z = 0; z < f->scene->zone_count; z++) {
+        f->places[z] = (view_place){.box = zones[z].zone.box, .radius = zones[z].zone.radius};
+        memcpy(f->places[z].origin, f->scene->zones[z].origin, sizeof f->places[z].origin);
+    }
+    for (uint32_t p = 0; p < f->scene->portal_count; p++) gate_make(f, p);
+    for (uint32_t z = 0; z < f->scene->zone_count; z++)
+        f->most_start_m = larger(f->most_start_m, f->sticking_out[z] + (double)f->places[z].radius / 65536);
+}
+
+static void sizes_find(flow *f)
+{
+    const scene *s = f->scene;
+    uint32_t points = 0;
+    for (uint32_t i = 0; i < s->portal_count; i++)
+        if (s->portals[i].point_count > points) points = s->portals[i].point_count;
+    f->polygon_capacity = 2 * (points + CULL_MAX_PLANES + 2); // twice: rounding may bend a loop
+    const uint64_t wanted = (uint64_t)s->zone_count * FLOW_ZONE_VOLUMES; // a zone takes no more of them in a run
+    f->pool_capacity = s->portal_count == 0 ? 0 : wanted < FLOW_CROSSINGS ? (uint32_t)wanted : FLOW_CROSSINGS;
+    f->node_capacity = 2 * s->zone_count + f->pool_capacity;
+    f->plane_capacity = 2 * s->zone_count * FLOW_ROOT_SIDES + f->pool_capacity * FLOW_PLANES_PER_CROSSING + CULL_MAX_PLANES;
+}
+
+static result arrays_open(flow *f)
+{
+    const size_t zones = f->scene->zone_count, portals = f->scene->portal_count, nodes = f->node_capacity;
+    arena *a = &f->blocks;
+    f->places = arena_push(a, zones, sizeof *f->places);
+    f->sticking_out = arena_push(a, zones, sizeof *f->sticking_out);
+    f->gates = arena_push(a, portals, sizeof *f->gates);
+    f->nodes = arena_push(a, nodes, sizeof *f->nodes);
+    f->planes = arena_push(a, f->plane_capacity, sizeof *f->planes);
+    f->records = arena_push(a, f->plane_capacity, sizeof *f->records);
+    f->states = arena_push(a, zones, sizeof *f->states);
+    f->queue = arena_push(a, nodes, sizeof *f->queue);
+    f->ways = arena_push(a, 2 * portals, sizeof *f->ways);
+    for (int i = 0; i < 2; i++) f->polygon[i] = arena_push(a, f->polygon_capacity, sizeof *f->polygon[i]);
+    for (int i = 0; i < 2; i++) f->order[i] = arena_push(a, zones, sizeof *f->order[i]);
+    f->found = arena_push(a, zones, sizeof *f->found);
+    f->sorted = arena_push(a, zones, sizeof *f->sorted);
+    f->starts = arena_push(a, zones, sizeof *f->starts);
+    f->volumes = arena_push(a, nodes, sizeof *f->volumes);
+    f->by_zone = arena_push(a, nodes, sizeof *f->by_zone);
+    const int has_all = f->places && f->sticking_out && f->gates && f->nodes && f->planes && f->records && f->states && f->queue && f->ways &&
+                        f->polygon[0] && f->polygon[1] && f->order[0] && f->order[1] && f->found && f->sorted && f->starts && f->volumes &&
+                        f->by_zone;
+    if (!has_all) return RESULT_NO_MEMORY;
+    memset(f->sticking_out, 0, zones * sizeof *f->sticking_out);
+    memset(f->states, 0, zones * sizeof *f->states);
+    memset(f->nodes, 0, nodes * sizeof *f->nodes);
+    memset(f->ways, 0, 2 * portals);
+    return RESULT_OK;
+}
+
+result flow_open(const flow_open_request *q, const allocator *memory, flow **out)
+{
+    flow *f = memory_alloc_zeroed(memory, 1, sizeof *f);
+    if (!f) return RESULT_NO_MEMORY;
+    f->scene = q->scene;
+    f->graph = q->graph;
+    f->memory = memory;
+    f->blocks = arena_make(memory);
+    sizes_find(f);
+    if (arrays_open(f) != RESULT_OK) {
+        flow_close(f);
+        return RESULT_NO_MEMORY;
+    }
+    places_make(f, q->zones);
+    *out = f;
+    return RESULT_OK;
+}
+
+void flow_close(flow *f)
+{
+    if (!f) return;
+    arena_free(&f->blocks);
+    memory_free(f->memory, f, 1, sizeof *f);
+}
+
+// ---- The work list ----
+
+void flow_queue(flow *f, flow_node *n)
+{
+    if (n->flags & NODE_QUEUED) return;
+    n->flags |= NODE_QUEUED;
+    uint32_t place = f->queue_first + f->queue_count++;
+    if (place >= f->node_capacity) place -= f->node_capacity;
+    f->queue[place] = (uint32_t)(n - f->nodes);
+}
+
+static flow_node *queue_pop(flow *f)
+{
+    flow_node *n = &f->nodes[f->queue[f->queue_first]];
+    f->queue_first = f->queue_first + 1 < f->node_capacity ? f->queue_first + 1 : 0;
+    f->queue_count--;
+    n->flags &= ~(uint32_t)NODE_QUEUED;
+    return n;
+}
+
+flow_state *flow_reach(flow *f, uint32_t zone, double key)
+{
+    flow_state *s = &f->states[zone];
+    if (s->flags & STATE_REACHED) {
+        if (key < s->key) s->key = key;
+        return s;
+    }
+    s->flags = STATE_REACHED;
+    s->key = key;
+    s->found = f->found_count++;
+    f->found[s->found].zone = zone;
+    view_in_zone(&f->base, &f->places[zone], &f->found[s->found].view);
+    return s;
+}
+
+void flow_root_add(flow *f, const flow_arrival *a)
+{
+    flow_state *s = flow_reach(f, a->zone, a->key);
+    if (s->flags & STATE_ROOT) return;
+    for (uint32_t i = 0; i < s->count; i++) f->nodes[s->nodes[i]].flags |= NODE_DEAD;
+    s->flags = (s->flags & ~(uint32_t)STATE_MERGED) | STATE_ROOT;
+    s->count = 1;
+    s->nodes[0] = a->zone;
+    flow_node *n = root_node(f, a->zone);
+    *n = (flow_node){.planes = f->planes + (size_t)a->zone * FLOW_ROOT_SIDES, .records = f->records + (size_t)a->zone * FLOW_ROOT_SIDES,
+                     .zone = a->zone, .way = a->way, .parent = a->parent, .rectangle = {{-1, -1}, {1, 1}}, .key = a->key};
+    if (a->parent != SCENE_NONE) n->path = f->nodes[a->parent].path | (uint64_t)1 << (a->way / 2 % 64);
+    view_volume volume;
+    view_volume_in_zone(&f->base, &f->places[a->zone], &volume);
+    n->plane_count = volume.plane_count;
+    for (uint32_t i = 0; i < volume.plane_count; i++) {
+        n->planes[i] = volume.planes[i];
+        if (f->scene->portal_count > 0) n->records[i] = flow_record_of(f, volume.planes[i], a->zone);
+    }
+    flow_queue(f, n);
+}
+
+// ---- A run ----
+
+static void side_make(flow *f, const double axis[3], double sign, double tangent)
+{
+    double *normal = f->side_normals[f->side_count];
+    const double inverse = 1 / sqrt(1 + tangent * tangent);
+    for (int i = 0; i < 3; i++) normal[i] = (sign * axis[i] + tangent * -f->base.back[i]) * inverse;
+    f->side_distances[f->side_count++] = 0;
+}
+
+// The sides of the picture as view_volume_in_zone makes them, known again by the bits of their normals, which are the
+// same in every zone.
+static void sides_make(flow *f)
+{
+    const view_base *b = &f->base;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        side_make(f, b->right, sign, b->wide);
+        side_make(f, b->up, sign, b->tall);
+    }
+    if (isfinite(b->camera->far_m)) {
+        memcpy(f->side_normals[f->side_count], b->back, sizeof b->back);
+        f->side_distances[f->side_count++] = b->camera->far_m;
+    }
+    for (uint32_t i = 0; i < f->side_count; i++) {
+        const cull_guard guard = flow_guard(f, 0);
+        f->side_floats[i] = cull_guard_plane(&guard, f->side_normals[i], f->side_distances[i]).normal;
+    }
+}
+
+static void run_begin(flow *f, const flow_request *q)
+{
+    for (uint32_t i = 0; i < f->found_count; i++) f->states[f->found[i].zone] = (flow_state){0};
+    memset(f->ways, 0, 2 * (size_t)f->scene->portal_count);
+    f->found_count = f->queue_first = f->queue_count = f->pool_count = 0;
+    f->plane_count = 2 * f->scene->zone_count * FLOW_ROOT_SIDES;
+    f->source_count = 1;
+    f->result = (flow_result){0};
+    f->camera = *q->camera;
+    view_base_make(&f->camera, &q->frame, &f->base);
+    const double tall = f->base.tall, wide = f->base.wide;
+    f->corner_m = q->camera->near_m * sqrt((tall * tall + wide * wide) + 1);
+    // As cull_guard_plane moves a line of the picture: pixels, and the boxes' widening at the picture's corner.
+    f->widening = 1.7320508075688772 * CULL_GUARD_DISTANCE * (1 + 1.0 / 262144) * f->base.reach;
+    f->guard_tangent = CULL_GUARD_PX * f->base.pixel_tangent + f->widening * f->base.reach;
+    f->side_count = 0;
+    if (f->scene->portal_count > 0) sides_make(f); // without portals nobody asks
+}
+
+static double place_distance(const view_place *p, const double eye[3])
+{
+    const double low[3] = {(double)p->box.min.x, (double)p->box.min.y, (double)p->box.min.z};
+    const double high[3] = {(double)p->box.max.x, (double)p->box.max.y, (double)p->box.max.z};
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+        const double at = eye[i] - p->origin[i], off = larger(larger(low[i] - at, at - high[i]), 0);
+        sum += off * off;
+    }
+    return sqrt(sum);
+}
+
+// graph_zones_at knows one distance; this is the zone's own, which a huge neighbour's radius does not reach into.
+static int is_start(const flow *f, uint32_t zone)
+{
+    const scene_zone *z = &f->scene->zones[zone];
+    const double near_m = f->corner_m + (double)f->places[zone].radius / 65536 + f->sticking_out[zone];
+    return hulls_height(f->scene, z, f->base.camera->eye) <= near_m;
+}
+
+static void start(flow *f)
+{
+    const scene *s = f->scene;
+    const double *eye = f->base.camera->eye;
+    const uint32_t count = graph_zones_at(f->graph, eye, f->corner_m + f->most_start_m, f->starts, s->zone_count);
+    for (uint32_t i = 0; i < count && i < s->zone_count; i++)
+        if (is_start(f, f->starts[i])) flow_root_add(f, &(flow_arrival){f->starts[i], SCENE_NONE, SCENE_NONE, 0});
+    if (f->found_count > 0) return;
+    f->result.is_everything = 1;
+    for (uint32_t z = 0; z < s->zone_count; z++)
+        if (!(s->zones[z].flags & ZONE_STRAY))
+            flow_root_add(f, &(flow_arrival){z, SCENE_NONE, SCENE_NONE, place_distance(&f->places[z], eye)});
+    f->queue_count = 0; // nothing is left to be reached
+}
+
+void flow_run(flow *f, const flow_request *q, flow_result *out)
+{
+    run_begin(f, q);
+    start(f);
+    while (f->queue_count > 0) {
+        flow_node *n = queue_pop(f);
+        if (!(n->flags & NODE_DEAD)) flow_leave(f, q, n);
+    }
+    for (uint32_t z = 0; z < f->scene->zone_count; z++)
+        if (f->scene->zones[z].flags & ZONE_STRAY) flow_root_add(f, &(flow_arrival){z, SCENE_NONE, SCENE_NONE, INFINITY});
+    f->queue_count = 0;
+    flow_finish(f, out);
+}

@@ -1,0 +1,241 @@
+// Through a portal: whether a volume gets through, who narrows it, and what the zone behind takes of it.
+// SPDX-License-Identifier: MIT
+// Invariant: a portal is passed over only if no straight line from the eye, inside the volume, goes through it.
+#include "flow_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+// One volume at one portal.
+typedef struct crossing {
+    const flow_request *request;
+    flow_node *from;
+    uint32_t way, local; // local: in the zone's own order
+    uint32_t target;
+    int is_near;
+    flow_polygon polygon; // what the volume leaves of the portal; all of it when near
+    double key;
+} crossing;
+
+double flow_near_m(const flow *f, uint32_t zone, uint32_t portal)
+{
+    return f->corner_m + (double)f->places[zone].radius / 65536 + f->gates[portal].bend;
+}
+
+double flow_eye_height(const flow *f, uint32_t way)
+{
+    const scene_portal *p = &f->scene->portals[way / 2];
+    const double *at = f->scene->portal_points[p->first_point], *eye = f->base.camera->eye;
+    const double above = (p->plane[0] * (eye[0] - at[0]) + p->plane[1] * (eye[1] - at[1])) + p->plane[2] * (eye[2] - at[2]);
+    return way % 2 == 0 ? above : -above;
+}
+
+static double gate_distance(const flow_gate *g, const double eye[3])
+{
+    double sum = 0;
+    for (int i = 0; i < 3; i++) {
+        const double off = eye[i] < g->low[i] ? g->low[i] - eye[i] : eye[i] > g->high[i] ? eye[i] - g->high[i] : 0;
+        sum += off * off;
+    }
+    return sqrt(sum);
+}
+
+static int is_near(const flow *f, uint32_t zone, uint32_t way, double height)
+{
+    const double near_m = flow_near_m(f, zone, way / 2);
+    return fabs(height) <= near_m && gate_distance(&f->gates[way / 2], f->base.camera->eye) <= near_m;
+}
+
+// A line that came in through one portal goes on behind its plane. A polygon that touches that plane with an edge, and is
+// else before it, is passed by none: without this, two portals that meet at an edge would feed each other. One that
+// lies in the plane is not judged.
+static int is_before_entry(const flow *f, const flow_node *n, const flow_polygon *p)
+{
+    if (!(n->flags & NODE_CLIPPED)) return 0;
+    const scene_portal *entry = &f->scene->portals[n->way / 2];
+    const double *at = f->scene->portal_points[entry->first_point], *eye = f->base.camera->eye;
+    const double sign = n->way % 2 == 0 ? -1 : 1, base[3] = {at[0] - eye[0], at[1] - eye[1], at[2] - eye[2]};
+    // Differences of coordinates on the scene's step: 2^-40 of them is far above double rounding, far below a step.
+    const double flat = f->gates[n->way / 2].bend + (double)f->places[n->zone].radius / 1099511627776;
+    double least = INFINITY, most = -INFINITY;
+    for (uint32_t i = 0; i < p->count; i++) {
+        const cull_point q = p->points[i];
+        const double above = entry->plane[0] * (q.x - base[0]) + entry->plane[1] * (q.y - base[1]) + entry->plane[2] * (q.z - base[2]);
+        least = sign * above < least ? sign * above : least;
+        most = sign * above > most ? sign * above : most;
+    }
+    return most <= flat && least < -flat;
+}
+
+static int is_on_path(const flow *f, const flow_node *n, uint32_t portal)
+{
+    if (n->source == 0 || !(n->path >> portal % 64 & 1)) return 0; // the whole frustum is refused by the zone that has it
+    for (const flow_node *at = n;; at = &f->nodes[at->parent]) {
+        if (at->way != SCENE_NONE && at->way / 2 == portal) return 1;
+        if (at->parent == SCENE_NONE) return 0;
+    }
+}
+
+int flow_touches(const flow *f, const flow_node *n, uint32_t way)
+{
+    if (is_near(f, n->zone, way, flow_eye_height(f, way))) return 1;
+    const flow_polygon p = flow_clip(f, way / 2, n);
+    return p.count > 0 && !is_before_entry(f, n, &p);
+}
+
+// ---- What the zone behind takes ----
+
+static flow_node *node_new(flow *f, const crossing *c, uint32_t planes)
+{
+    flow_state *s = &f->states[c->target];
+    const uint32_t number = 2 * f->scene->zone_count + f->pool_count++;
+    flow_node *n = &f->nodes[number];
+    *n = (flow_node){.planes = f->planes + f->plane_count, .records = f->records + f->plane_count, .plane_count = planes,
+                     .zone = c->target, .way = c->way, .parent = (uint32_t)(c->from - f->nodes), .key = c->key,
+                     .path = c->from->path | (uint64_t)1 << (c->way / 2 % 64)};
+    if (!c->is_near && flow_eye_height(f, c->way) > flow_near_m(f, c->from->zone, c->way / 2)) n->flags |= NODE_CLIPPED;
+    f->plane_count += planes;
+    s->nodes[s->count++] = number;
+    return n;
+}
+
+static void same_add(flow *f, const crossing *c)
+{
+    const flow_node *from = c->from;
+    if (from->source == 0) {
+        flow_root_add(f, &(flow_arrival){c->target, c->way, (uint32_t)(from - f->nodes), c->key});
+        return;
+    }
+    const flow_state *s = flow_reach(f, c->target, c->key);
+    for (uint32_t i = 0; i < s->count; i++)
+        if (f->nodes[s->nodes[i]].source == from->source) return;
+    if (flow_must_merge(f, s, from->plane_count)) {
+        flow_merge_add(f, c->target, &from->rectangle, c->key);
+        return;
+    }
+    flow_node *n = node_new(f, c, from->plane_count);
+    n->source = from->source;
+    n->rectangle = from->rectangle;
+    for (uint32_t i = 0; i < from->plane_count; i++) {
+        n->records[i] = from->records[i];
+        n->planes[i] = flow_plane_in(f, &n->records[i], c->target);
+    }
+    flow_queue(f, n);
+}
+
+// A plane that the crosser copied keeps its record.
+static flow_record record_find(const flow_node *from, cull_plane plane)
+{
+    for (uint32_t i = 0; i < from->plane_count; i++)
+        if (memcmp(&from->planes[i], &plane, sizeof plane) == 0) return from->records[i];
+    return (flow_record){plane, from->zone};
+}
+
+static int is_any_around(const flow *f, const flow_state *s, const flow_candidate *c, const flow_rectangle *r)
+{
+    for (uint32_t i = 0; i < s->count; i++) {
+        const flow_node *other = &f->nodes[s->nodes[i]];
+        const int fits = r->low[0] >= other->rectangle.low[0] && r->low[1] >= other->rectangle.low[1] &&
+                         r->high[0] <= other->rectangle.high[0] && r->high[1] <= other->rectangle.high[1];
+        if (fits && flow_is_inside(f, c, other)) return 1;
+    }
+    return 0;
+}
+
+static void narrow_add(flow *f, const crossing *c, const cull_plane *planes, uint32_t count)
+{
+    flow_state *s = flow_reach(f, c->target, c->key);
+    flow_record records[CULL_MAX_PLANES];
+    for (uint32_t i = 0; i < count; i++) records[i] = record_find(c->from, planes[i]);
+    const flow_rectangle rectangle = flow_rectangle_of(f, &c->polygon);
+    if (is_any_around(f, s, &(flow_candidate){records, &c->polygon, count, c->way}, &rectangle)) return;
+    if (flow_must_merge(f, s, count)) {
+        flow_merge_add(f, c->target, &rectangle, c->key);
+        return;
+    }
+    flow_node *n = node_new(f, c, count);
+    n->source = f->source_count++;
+    n->rectangle = rectangle;
+    for (uint32_t i = 0; i < count; i++) {
+        n->records[i] = records[i];
+        n->planes[i] = flow_plane_in(f, &records[i], c->target);
+    }
+    flow_queue(f, n);
+}
+
+// What a crosser wrote is its word, not ours.
+static int is_sound(const cull_plane *planes, uint32_t count)
+{
+    if (count > CULL_MAX_PLANES) return 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const cull_vec3 n = planes[i].normal;
+        const float length = n.x * n.x + n.y * n.y + n.z * n.z;
+        if (!(length > 0.99f && length < 1.01f) || !isfinite(planes[i].offset)) return 0;
+    }
+    return 1;
+}
+
+static void take(flow *f, const crossing *c)
+{
+    flow_state *s = &f->states[c->target];
+    const uint8_t before = f->ways[c->way];
+    f->ways[c->way] = WAY_CROSSED;
+    if (s->flags & STATE_ROOT) {
+        (void)flow_reach(f, c->target, c->key); // has all; maybe nearer this way
+        return;
+    }
+    if (!c->is_near && flow_must_merge(f, s, 0)) { // no need to ask
+        const flow_rectangle r = flow_rectangle_of(f, &c->polygon);
+        flow_merge_add(f, c->target, &r, c->key);
+        return;
+    }
+    if (c->is_near || !c->request->crosser.cross) {
+        same_add(f, c);
+        return;
+    }
+    cull_plane planes[CULL_MAX_PLANES];
+    uint32_t count = 0;
+    const flow_crosser *crosser = &c->request->crosser;
+    const cull_volume in = {c->from->planes, c->from->plane_count, 0};
+    const cull_view *view = &f->found[f->states[c->from->zone].found].view;
+    const cull_crossing answer = crosser->cross(crosser->user, c->from->zone, view, &in, c->local, planes, &count);
+    if (answer == CULL_CROSS_NONE) {
+        f->ways[c->way] = before ? before : WAY_REFUSED;
+    } else if (answer == CULL_CROSS_NARROW && is_sound(planes, count)) {
+        narrow_add(f, c, planes, count);
+    } else {
+        f->result.limits_hit += answer != CULL_CROSS_SAME;
+        same_add(f, c);
+    }
+}
+
+static void portal_try(flow *f, crossing *c)
+{
+    const flow_node *from = c->from;
+    const uint32_t portal = c->way / 2;
+    if (!c->request->open[portal]) return;
+    const double height = flow_eye_height(f, c->way);
+    if (height < -flow_near_m(f, from->zone, portal)) return; // the eye is behind it
+    const double along = gate_distance(&f->gates[portal], f->base.camera->eye);
+    c->key = along > from->key ? along : from->key;
+    const flow_state *s = &f->states[c->target];
+    if (s->flags & STATE_ROOT && s->key <= c->key) return; // it has all, and is no farther
+    if (is_on_path(f, from, portal)) return;
+    f->result.crossings++;
+    c->is_near = is_near(f, from->zone, c->way, height);
+    if (!c->is_near) {
+        c->polygon = flow_clip(f, portal, from);
+        if (c->polygon.count == 0 || is_before_entry(f, from, &c->polygon)) return;
+    }
+    take(f, c);
+}
+
+void flow_leave(flow *f, const flow_request *q, flow_node *n)
+{
+    const scene_zone *z = &f->scene->zones[n->zone];
+    for (uint32_t i = 0; i < z->portal_count && !(n->flags & NODE_DEAD); i++) {
+        const uint32_t way = f->scene->zone_portals[z->first_portal + i];
+        crossing c = {.request = q, .from = n, .way = way, .local = i, .target = f->scene->portals[way / 2].zones[1 - way % 2]};
+        portal_try(f, &c);
+    }
+}

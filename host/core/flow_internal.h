@@ -1,0 +1,141 @@
+// Inside of flow: one view's memory, and what its files share. The public side is flow.h.
+// SPDX-License-Identifier: MIT
+// Invariant: a node is one volume in one zone. Nodes are never given back within a run, so paths can be walked to their
+// start; one that gave way is NODE_DEAD. A zone lists its living nodes only.
+#ifndef PORTCULLIS_HOST_FLOW_INTERNAL_H
+#define PORTCULLIS_HOST_FLOW_INTERNAL_H
+
+#include "flow.h"
+
+#include <portcullis/clip.h>
+#include <portcullis/plane.h>
+
+enum {
+    FLOW_ROOT_SIDES = 5,              // four sides of the picture and the far plane
+    FLOW_PLANES_PER_CROSSING = 12,    // room kept on the average; a volume may have CULL_MAX_PLANES
+    FLOW_GROWTHS = 2,                 // of a merged rectangle, before it becomes the whole picture
+    FLOW_RECTANGLE_STEPS = 4,         // of a merged rectangle, between the picture's middle and its side
+};
+
+// Where a plane was first made, so that carrying it through many zones adds its slack once and not once a zone.
+#define FLOW_ROOT_RECORD 0x80000000u // + side: a side of the picture, derived from the camera anew in each zone
+typedef struct flow_record {
+    cull_plane plane; // as first written
+    uint32_t origin;  // the zone that it was written for, or FLOW_ROOT_RECORD + side
+} flow_record;
+
+typedef struct flow_rectangle { double low[2], high[2]; } flow_rectangle; // of the picture, -1 .. 1, guard band included
+
+enum {
+    NODE_DEAD = 1u << 0,   // gave way
+    NODE_QUEUED = 1u << 1,
+    NODE_CLIPPED = 1u << 2, // its way was crossed with the eye well in front of it
+};
+typedef struct flow_node {
+    cull_plane *planes; // relative to the zone's origin
+    flow_record *records;
+    uint32_t plane_count, zone, way, parent;
+    uint32_t source; // 0: the view's whole frustum
+    uint32_t flags, place; // place: in the result
+    uint64_t path;   // bit (portal mod 64) of each portal on the way here: a quick "surely not"
+    flow_rectangle rectangle;
+    double key;
+} flow_node;
+
+enum { STATE_REACHED = 1u << 0, STATE_ROOT = 1u << 1, STATE_MERGED = 1u << 2 };
+typedef struct flow_state { // of a zone
+    uint32_t nodes[FLOW_ZONE_VOLUMES];
+    uint32_t count, flags, growths, found; // found: in flow.found
+    double key;
+} flow_state;
+
+typedef struct flow_gate { // of a portal
+    double low[3], high[3]; // its box, world
+    double bend;            // metres that its points lie off its plane
+} flow_gate;
+
+enum { WAY_CROSSED = 1, WAY_REFUSED = 2 }; // refused: the crosser saw nothing behind it
+
+typedef struct flow_polygon { // relative to the eye, world axes
+    const cull_point *points;
+    uint32_t count;
+} flow_polygon;
+
+struct flow {
+    const scene *scene;
+    const graph *graph;
+    const allocator *memory;
+    arena blocks;
+
+    // Constant after open.
+    view_place *places;   // by zone
+    double *sticking_out; // by zone: metres that its portals reach out of its hulls
+    flow_gate *gates;     // by portal
+    double most_start_m; // of all zones: metres beyond the near plane's corner at which the eye is still taken as in it
+    uint32_t node_capacity, pool_capacity, plane_capacity, polygon_capacity;
+
+    // Of the run.
+    camera camera;
+    view_base base;
+    double side_normals[FLOW_ROOT_SIDES][3], side_distances[FLOW_ROOT_SIDES];
+    cull_vec3 side_floats[FLOW_ROOT_SIDES]; // as every zone's float plane has them
+    uint32_t side_count;
+    double corner_m, widening, guard_tangent; // near plane's corner; of cull_guard_plane; tangents a line of the picture moves by at most
+    flow_node *nodes; // by zone: whole frustum; by zone: merged rectangle; then the pool
+    uint32_t pool_count, plane_count, source_count;
+    cull_plane *planes;
+    flow_record *records;
+    flow_state *states; // by zone
+    uint32_t *queue, queue_first, queue_count;
+    uint8_t *ways; // 0, or WAY_*, by way
+    cull_point *polygon[2];
+    flow_zone *found, *sorted; // in the order reached; near to far
+    uint64_t *order[2];
+    uint32_t found_count;
+    uint32_t *starts; // scene.zone_count
+    flow_volume *volumes;
+    uint32_t *by_zone;
+    flow_result result;
+};
+
+static inline flow_node *root_node(const flow *f, uint32_t zone)
+{
+    return &f->nodes[zone];
+}
+static inline flow_node *merged_node(const flow *f, uint32_t zone)
+{
+    return &f->nodes[f->scene->zone_count + zone];
+}
+
+// ---- flow.c ----
+void flow_queue(flow *f, flow_node *n);
+flow_state *flow_reach(flow *f, uint32_t zone, double key); // the view in it, when it is new
+typedef struct flow_arrival { uint32_t zone, way, parent; double key; } flow_arrival;
+void flow_root_add(flow *f, const flow_arrival *a); // the whole frustum: all else in the zone gives way
+
+// ---- flow_cross.c ----
+void flow_leave(flow *f, const flow_request *q, flow_node *n); // through all portals of its zone
+// Metres within which the eye counts as on the portal's plane, for who leaves the zone (DESIGN.md, rule 3).
+double flow_near_m(const flow *f, uint32_t zone, uint32_t portal);
+double flow_eye_height(const flow *f, uint32_t way); // above the portal's plane, positive in the zone that is left
+int flow_touches(const flow *f, const flow_node *n, uint32_t way); // of the polygon something is left in the volume, or the eye is at it
+
+// ---- flow_volume.c ----
+cull_guard flow_guard(const flow *f, uint32_t zone);
+flow_record flow_record_of(const flow *f, cull_plane plane, uint32_t zone);
+cull_plane flow_plane_in(const flow *f, const flow_record *r, uint32_t zone);
+int flow_plane_is_idle(cull_plane plane, const cull_box *box); // the whole box is inside
+flow_polygon flow_clip(const flow *f, uint32_t portal, const flow_node *n);
+flow_rectangle flow_rectangle_of(const flow *f, const flow_polygon *p);
+// All that is seen of the zone through the polygon, in a volume of those planes, is in the other volume too.
+typedef struct flow_candidate { const flow_record *records; const flow_polygon *polygon; uint32_t plane_count, way; } flow_candidate;
+int flow_is_inside(const flow *f, const flow_candidate *c, const flow_node *other);
+
+// ---- flow_merge.c ----
+int flow_must_merge(const flow *f, const flow_state *s, uint32_t planes);
+void flow_merge_add(flow *f, uint32_t zone, const flow_rectangle *r, double key);
+
+// ---- flow_result.c ----
+void flow_finish(flow *f, flow_result *out);
+
+#endif

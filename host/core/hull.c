@@ -1,0 +1,151 @@
+// Convex bodies of planes: each plane's face is a large square cut by all other planes; the faces' corners give the box.
+// SPDX-License-Identifier: MIT
+// Invariant: done twice, first coarsely from the world's origin, then from the body's own middle, so that a small body far
+// away is measured as well as one near by.
+#include "hull.h"
+
+#include <portcullis/clip.h>
+
+#include <math.h>
+
+static const double REACH_MOST = 4e9;    // metres: the first square's half side; twice what a bounded body can need
+static const double CORNER_MOST = 2e9;   // metres: a corner beyond it is the square's own
+static const double HULL_MOST = 1e9;     // metres: as for all coordinates of a scene
+static const double SAME_PLANE = 1e-12;  // two planes whose unit normals differ by less are parallel
+static const double VOLUME_LEAST = 1e-12; // of the cube of the body's diagonal: thinner is rounding, not a body
+
+typedef struct hull_measure {
+    const scene_solid_plane *planes;
+    uint32_t plane_count;
+    double middle[3], reach; // squares reach that far from the middle
+    double min[3], max[3], volume;
+} hull_measure;
+
+static double dot(const double a[3], const double b[3])
+{
+    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+}
+
+static double distance_of(const hull_measure *m, uint32_t plane)
+{
+    return m->planes[plane].distance - dot(m->planes[plane].normal, m->middle);
+}
+
+// A square in the plane, counterclockwise seen from outside, relative to the middle.
+static void square(const hull_measure *m, uint32_t plane, cull_point out[4])
+{
+    const double *n = m->planes[plane].normal, h = distance_of(m, plane);
+    const int axis = fabs(n[0]) <= fabs(n[1]) && fabs(n[0]) <= fabs(n[2]) ? 0 : fabs(n[1]) <= fabs(n[2]) ? 1 : 2; // the flattest
+    double u[3], v[3], e[3] = {0, 0, 0};
+    e[axis] = 1;
+    const double along = n[axis];
+    for (int k = 0; k < 3; ++k) u[k] = e[k] - along * n[k];
+    const double length = sqrt(dot(u, u));
+    for (int k = 0; k < 3; ++k) u[k] *= m->reach / length;
+    v[0] = n[1] * u[2] - n[2] * u[1];
+    v[1] = n[2] * u[0] - n[0] * u[2];
+    v[2] = n[0] * u[1] - n[1] * u[0];
+    static const double signs[4][2] = {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+    for (int c = 0; c < 4; ++c) {
+        double p[3];
+        for (int k = 0; k < 3; ++k) p[k] = n[k] * h + signs[c][0] * u[k] + signs[c][1] * v[k];
+        out[c] = (cull_point){p[0], p[1], p[2]};
+    }
+}
+
+static int is_same_plane(const scene_solid_plane *a, const scene_solid_plane *b)
+{
+    return dot(a->normal, b->normal) > 1 - SAME_PLANE && fabs(a->distance - b->distance) <= SAME_PLANE * (1 + fabs(a->distance));
+}
+
+// The plane's face, at most plane_count + 4 points; 0: it has none, or an earlier plane is the same.
+static uint32_t face(const hull_measure *m, uint32_t plane, cull_point **out, cull_point *a, cull_point *b)
+{
+    if (fabs(distance_of(m, plane)) > m->reach) return 0;
+    square(m, plane, a);
+    uint32_t count = 4;
+    for (uint32_t p = 0; p < m->plane_count && count; ++p) {
+        if (p == plane) continue;
+        if (is_same_plane(&m->planes[p], &m->planes[plane])) {
+            if (p < plane) return 0;
+            continue;
+        }
+        const double *n = m->planes[p].normal;
+        const cull_cut cut = {-n[0], -n[1], -n[2], distance_of(m, p)};
+        count = cull_polygon_clip(a, count, cut, b, HULL_CUTS_MOST + 8);
+        cull_point *swap = a;
+        a = b;
+        b = swap;
+    }
+    *out = a;
+    return count;
+}
+
+static double twice_area(const cull_point *p, uint32_t count, const double n[3])
+{
+    double sum = 0;
+    for (uint32_t i = 1; i + 1 < count; ++i) {
+        const double u[3] = {p[i].x - p[0].x, p[i].y - p[0].y, p[i].z - p[0].z};
+        const double v[3] = {p[i + 1].x - p[0].x, p[i + 1].y - p[0].y, p[i + 1].z - p[0].z};
+        const double cross[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+        sum += dot(cross, n);
+    }
+    return sum;
+}
+
+static void measure(hull_measure *m)
+{
+    cull_point first[HULL_CUTS_MOST + 8], second[HULL_CUTS_MOST + 8];
+    m->volume = 0;
+    for (int k = 0; k < 3; ++k) {
+        m->min[k] = INFINITY;
+        m->max[k] = -INFINITY;
+    }
+    for (uint32_t i = 0; i < m->plane_count; ++i) {
+        cull_point *points = first;
+        const uint32_t count = face(m, i, &points, first, second);
+        if (count < 3) continue;
+        m->volume += twice_area(points, count, m->planes[i].normal) * distance_of(m, i) / 6;
+        for (uint32_t c = 0; c < count; ++c) {
+            const double p[3] = {points[c].x, points[c].y, points[c].z};
+            for (int k = 0; k < 3; ++k) {
+                m->min[k] = fmin(m->min[k], m->middle[k] + p[k]);
+                m->max[k] = fmax(m->max[k], m->middle[k] + p[k]);
+            }
+        }
+    }
+}
+
+static const char *coarse_fault(const hull_measure *m)
+{
+    if (m->min[0] > m->max[0]) return "has an empty hull; its planes leave nothing between them";
+    for (int k = 0; k < 3; ++k) {
+        if (m->min[k] < -CORNER_MOST || m->max[k] > CORNER_MOST) return "has a hull that is not closed on all sides";
+        if (m->min[k] < -HULL_MOST || m->max[k] > HULL_MOST) return "reaches beyond 1e9 m; move it nearer to the origin";
+    }
+    return NULL;
+}
+
+const char *hull_fault(const scene_solid_plane *planes, uint32_t plane_count, double min[3], double max[3])
+{
+    if (plane_count < 4) return "has a hull that is not closed on all sides";
+    hull_measure m = {.planes = planes, .plane_count = plane_count, .reach = REACH_MOST};
+    measure(&m);
+    const char *fault = coarse_fault(&m);
+    if (fault) return fault;
+    double size = 0;
+    for (int k = 0; k < 3; ++k) {
+        m.middle[k] = m.min[k] + (m.max[k] - m.min[k]) / 2;
+        size = fmax(size, m.max[k] - m.min[k]);
+    }
+    m.reach = 4 * size + 1e-3; // 1 mm: a body below the first measure's error is still found
+    measure(&m);
+    double diagonal = 0;
+    for (int k = 0; k < 3; ++k) {
+        if (!(m.min[k] <= m.max[k])) return "has an empty hull; its planes leave nothing between them";
+        min[k] = m.min[k];
+        max[k] = m.max[k];
+        diagonal = hypot(diagonal, m.max[k] - m.min[k]);
+    }
+    return m.volume > VOLUME_LEAST * diagonal * diagonal * diagonal ? NULL : "has an empty hull; its planes leave nothing between them";
+}

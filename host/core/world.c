@@ -1,0 +1,214 @@
+// Worlds: opens zones, graph, movers and chains of a scene; doors and movers on top. Chains: world_chains.c.
+// SPDX-License-Identifier: MIT
+#include "world_parts.h"
+
+#include <string.h>
+
+// ---- Opening ----
+
+static result count_shared(world *w)
+{
+    const scene *s = w->scene;
+    for (uint32_t i = 0; i < s->item_count; ++i) w->shared_count += s->listings[i] > 1;
+    w->shared_items = memory_alloc(w->memory, w->shared_count, sizeof *w->shared_items);
+    if (!w->shared_items) return RESULT_NO_MEMORY;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < s->item_count; ++i)
+        if (s->listings[i] > 1) w->shared_items[count++] = i;
+    return RESULT_OK;
+}
+
+static result open_zones(world *w)
+{
+    const scene *s = w->scene;
+    const uint32_t most = s->zone_count == 1 || w->mover_numbers < ZONE_MOVERS_MOST ? w->mover_numbers : ZONE_MOVERS_MOST;
+    w->data = memory_alloc_zeroed(w->memory, s->zone_count, sizeof *w->data);
+    w->chains = memory_alloc_zeroed(w->memory, s->zone_count, sizeof *w->chains);
+    result done = w->data && w->chains ? RESULT_OK : RESULT_NO_MEMORY;
+    for (uint32_t i = 0; i < s->zone_count && done == RESULT_OK; ++i)
+        done = zone_data_open(&(zone_data_request){s, i, most}, w->memory, &w->data[i]);
+    return done;
+}
+
+static void place_mover(world *w, uint32_t mover, result (*place)(movers *, uint32_t, const double *, const double *))
+{
+    const scene *s = w->scene;
+    const uint32_t door = s->movers[mover].door;
+    scene_pose pose;
+    double min[3], max[3];
+    scene_pose_at(s, mover, w->time_s, door == SCENE_NONE ? DOORS_SHUT : w->doors[door], &pose);
+    scene_pose_box(s, mover, &pose, min, max);
+    if (place(w->movers, mover, min, max) == RESULT_OK) w->poses[mover] = pose; // else it stays where it was
+}
+
+static void shut_portals(world *w, uint32_t door)
+{
+    for (uint32_t i = 0; i < w->scene->portal_count; ++i)
+        if (w->scene->portals[i].door == door) w->open[i] = w->doors[door] == DOORS_OPEN;
+    w->open_changes++;
+}
+
+static result open_movers(world *w)
+{
+    const scene *s = w->scene;
+    w->poses = memory_alloc_zeroed(w->memory, s->mover_count, sizeof *w->poses);
+    w->doors = memory_alloc_zeroed(w->memory, s->door_count, sizeof *w->doors);
+    w->open = memory_alloc_zeroed(w->memory, s->portal_count, 1);
+    if (!w->poses || !w->doors || !w->open || graph_open(s, w->memory, &w->graph) != RESULT_OK) return RESULT_NO_MEMORY;
+    const movers_request q = {s, w->graph, w->mover_numbers};
+    if (movers_open(&q, w->memory, &w->movers) != RESULT_OK) return RESULT_NO_MEMORY;
+    for (uint32_t i = 0; i < s->door_count; ++i) w->doors[i] = s->doors[i].at_rest;
+    for (uint32_t i = 0; i < s->portal_count; ++i) {
+        const uint32_t door = s->portals[i].door;
+        w->open[i] = door == SCENE_NONE || w->doors[door] == DOORS_OPEN;
+    }
+    for (uint32_t i = 0; i < s->mover_count; ++i) place_mover(w, i, movers_add);
+    return RESULT_OK;
+}
+
+static result open_chains(world *w, const world_request *q, report *r)
+{
+    result done = RESULT_OK;
+    for (uint32_t i = 0; i < w->scene->zone_count && done == RESULT_OK; ++i) {
+        const chain_spec *spec = q->chains && q->chains[i] ? q->chains[i] : q->chain;
+        if (w->data[i].zone.item_count) done = zone_chain_build(&(zone_chain_request){w, i, spec}, r, &w->chains[i]);
+    }
+    return done;
+}
+
+static result open_lock(world *w)
+{
+    w->loading = memory_alloc(w->memory, 1, sizeof *w->loading);
+    if (!w->loading) return RESULT_NO_MEMORY;
+    if (pthread_mutex_init(w->loading, NULL) == 0) return RESULT_OK;
+    memory_free(w->memory, w->loading, 1, sizeof *w->loading);
+    w->loading = NULL;
+    return RESULT_NO_MEMORY;
+}
+
+result world_open(const world_request *q, report *r, world **out)
+{
+    const allocator *memory = q->services->memory;
+    if (q->scene->mover_count > MOVERS_MOST || q->more_movers > MOVERS_MOST - q->scene->mover_count)
+        return report_error(r, q->scene->path, 0, "%u movers and room for %u more are over %d; ask for room for fewer", (unsigned)q->scene->mover_count, (unsigned)q->more_movers, MOVERS_MOST);
+    world *w = memory_alloc_zeroed(memory, 1, sizeof *w);
+    if (!w) return report_no_memory(r, NULL);
+    w->scene = q->scene;
+    w->plugins = q->plugins;
+    w->services = q->services;
+    w->memory = memory;
+    w->mover_numbers = q->scene->mover_count + q->more_movers;
+    result done = open_lock(w);
+    if (done == RESULT_OK) done = count_shared(w);
+    if (done == RESULT_OK) done = open_zones(w);
+    if (done == RESULT_OK) done = open_movers(w);
+    if (done != RESULT_OK) report_no_memory(r, NULL);
+    else done = open_chains(w, q, r);
+    if (done != RESULT_OK) {
+        world_close(w);
+        return done;
+    }
+    *out = w;
+    return RESULT_OK;
+}
+
+static void close_zones(world *w)
+{
+    const uint32_t count = w->scene->zone_count;
+    for (uint32_t i = 0; w->data && w->chains && i < count; ++i) zone_chain_close(&w->chains[i], w, i);
+    for (uint32_t i = 0; w->data && i < count; ++i) zone_data_close(&w->data[i]);
+    memory_free(w->memory, w->chains, count, sizeof *w->chains);
+    memory_free(w->memory, w->data, count, sizeof *w->data);
+}
+
+void world_close(world *w)
+{
+    if (!w) return;
+    world_assert_still(w);
+    while (w->views) world_view_close(w->views);
+    const scene *s = w->scene;
+    const allocator *memory = w->memory;
+    close_zones(w);
+    movers_close(w->movers);
+    graph_close(w->graph);
+    memory_free(memory, w->shared_items, w->shared_count, sizeof *w->shared_items);
+    memory_free(memory, w->poses, s->mover_count, sizeof *w->poses);
+    memory_free(memory, w->doors, s->door_count, sizeof *w->doors);
+    memory_free(memory, w->open, s->portal_count, 1);
+    if (w->loading) pthread_mutex_destroy(w->loading);
+    memory_free(memory, w->loading, 1, sizeof *w->loading);
+    memory_free(memory, w, 1, sizeof *w);
+}
+
+const zone_data *world_zone(const world *w, uint32_t zone)
+{
+    return &w->data[zone];
+}
+
+// ---- Doors and movers ----
+
+void world_set_door(world *w, uint32_t door, door_state state)
+{
+    world_assert_still(w);
+    assert(door < w->scene->door_count);
+    if (w->doors[door] == state) return;
+    w->doors[door] = state;
+    shut_portals(w, door);
+    if (w->scene->doors[door].mover != SCENE_NONE) place_mover(w, w->scene->doors[door].mover, movers_move);
+}
+
+door_state world_door(const world *w, uint32_t door)
+{
+    return w->doors[door];
+}
+
+void world_set_time(world *w, double time_s)
+{
+    world_assert_still(w);
+    w->time_s = time_s;
+    for (uint32_t i = 0; i < w->scene->mover_count; ++i)
+        if (w->scene->movers[i].key_count) place_mover(w, i, movers_move);
+}
+
+const scene_pose *world_poses(const world *w)
+{
+    return w->poses;
+}
+
+result world_mover_add(world *w, const double min[3], const double max[3], uint32_t *out)
+{
+    world_assert_still(w);
+    const uint32_t mover = movers_free_number(w->movers);
+    if (mover == SCENE_NONE) return RESULT_BAD_INPUT;
+    const result done = movers_add(w->movers, mover, min, max);
+    if (done == RESULT_OK) *out = mover;
+    return done;
+}
+
+// The scene's own movers go where doors and paths have them.
+static int is_of_the_application(const world *w, uint32_t mover)
+{
+    return mover >= w->scene->mover_count && mover < w->mover_numbers;
+}
+
+result world_mover_move(world *w, uint32_t mover, const double min[3], const double max[3])
+{
+    world_assert_still(w);
+    return is_of_the_application(w, mover) ? movers_move(w->movers, mover, min, max) : RESULT_BAD_INPUT;
+}
+
+result world_mover_remove(world *w, uint32_t mover)
+{
+    world_assert_still(w);
+    return is_of_the_application(w, mover) ? movers_remove(w->movers, mover) : RESULT_BAD_INPUT;
+}
+
+const movers *world_movers(const world *w)
+{
+    return w->movers;
+}
+
+const graph *world_graph(const world *w)
+{
+    return w->graph;
+}

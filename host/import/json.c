@@ -1,0 +1,145 @@
+// Reader of JSON scenes: the passes over the files, and what they share.
+// SPDX-License-Identifier: MIT
+#include "json_scene.h"
+
+#include <string.h>
+
+// ---- What the passes share ----
+
+result entries_read(json_scene *s, const char *list_key, entry_reader read)
+{
+    json_document *const *documents = s->documents.items;
+    result done = RESULT_OK;
+    for (size_t d = 0; d < s->documents.count && done == RESULT_OK; ++d) {
+        json_node list;
+        size_t count = 0;
+        const json_node root = node_root(&documents[d]->file);
+        if (!node_find(&root, list_key, &list)) continue;
+        done = node_array(&list, 0, NODES_MOST, &count);
+        for (size_t i = 0; i < count && done == RESULT_OK; ++i) {
+            const json_entry e = {s, documents[d], node_item(&list, i)};
+            const builder_transform nothing = placement_none();
+            done = entry_place(&e, &nothing);
+            if (done == RESULT_OK) done = read(&e);
+        }
+    }
+    scene_builder_transform_end(s->job->builder);
+    return done;
+}
+
+result entry_no_memory(const json_entry *e)
+{
+    return report_no_memory(e->scene->job->report, e->document->file.path);
+}
+
+result entry_told(const json_entry *e, result done, const char *what, const char *fault)
+{
+    if (done == RESULT_OK || e->scene->job->report->errors != e->scene->errors_before) return done;
+    if (done == RESULT_NO_MEMORY) return entry_no_memory(e);
+    if (!fault) fault = "goes beyond what a scene holds; use fewer or smaller parts";
+    return node_fault(&e->node, "the %s %s%s", what, fault, strchr(fault, ';') ? "" : "; correct it");
+}
+
+result entry_place(const json_entry *e, const builder_transform *inner)
+{
+    const builder_transform all = placement_within(&e->document->place, inner);
+    const result done = scene_builder_transform(e->scene->job->builder, &all);
+    if (done != RESULT_BAD_INPUT) return done == RESULT_OK ? done : entry_no_memory(e);
+    return node_fault(&e->node, "placed too far away, or scaled too much, by all the includes round it; use smaller numbers");
+}
+
+result entry_name(const json_entry *e, const char *name, const char **out)
+{
+    const char *prefix = *name == '/' ? "" : e->document->prefix;
+    if (*name == '/') name++;
+    const size_t before = strlen(prefix), length = strlen(name);
+    char *full = arena_push(&e->scene->memory, before + length + 1, 1);
+    if (!full) return entry_no_memory(e);
+    memcpy(full, prefix, before);
+    memcpy(full + before, name, length + 1);
+    *out = full;
+    return RESULT_OK;
+}
+
+result entry_new_name(const json_entry *e, name_table *names, const char *kind, uint32_t number, const char **out)
+{
+    json_node node;
+    const char *name;
+    result done = node_need(&e->node, "name", &node);
+    if (done == RESULT_OK) done = node_text(&node, &name);
+    if (done == RESULT_OK && *name == '/') done = node_fault(&node, "a name begins with '/'; take it off");
+    if (done == RESULT_OK) done = entry_name(e, name, out);
+    if (done != RESULT_OK) return done;
+    done = name_table_add(names, *out, number);
+    if (done == RESULT_NO_MEMORY) return entry_no_memory(e);
+    return done == RESULT_OK ? done : node_fault(&node, "there is a %s '%s' already; choose another name, or give one of two includes a \"name\"", kind, *out);
+}
+
+result entry_own(const json_entry *e, name_table *names, named **out)
+{
+    const char *name = json_string_value(json_object_get(e->node.value, "name")), *full; // is there, and a text
+    const result done = entry_name(e, name, &full);
+    if (done == RESULT_OK) *out = name_table_change(names, full);
+    return done;
+}
+
+result entry_refer(const json_entry *e, const json_node *reference, const name_table *names, const char *kind, uint32_t *out)
+{
+    const char *name, *full;
+    result done = node_text(reference, &name);
+    if (done == RESULT_OK) done = entry_name(e, name, &full);
+    if (done != RESULT_OK) return done;
+    const named *found = name_table_find(names, full);
+    if (found) {
+        *out = found->number;
+        return RESULT_OK;
+    }
+    const char *nearest = name_table_nearest(names, full);
+    if (nearest) return node_fault(reference, "there is no %s '%s'; did you mean '%s'?", kind, full, nearest);
+    return node_fault(reference, "there is no %s '%s'; correct the name or add it", kind, full);
+}
+
+result entry_points(const json_node *list, size_t least, size_t most, double (*out)[3], size_t *out_count)
+{
+    size_t count = 0;
+    result done = node_array(list, least, most, &count);
+    for (size_t i = 0; i < count && done == RESULT_OK; ++i) {
+        const json_node point = node_item(list, i);
+        done = node_numbers(&point, 3, out[i]);
+    }
+    *out_count = count;
+    return done;
+}
+
+// ---- The whole ----
+
+static result read_passes(json_scene *s)
+{
+    static result (*const passes[])(json_scene *) = {documents_load, geometry_read, zones_read,  doors_list, movers_read,
+                                                     doors_read,     portals_read,  lights_read, paths_read};
+    result done = RESULT_OK;
+    for (size_t p = 0; p < sizeof passes / sizeof *passes && done == RESULT_OK; ++p) done = passes[p](s);
+    return done;
+}
+
+result json_into(const reader_job *j)
+{
+    const allocator *memory = j->memory;
+    json_scene s = {.job = j,
+                    .memory = arena_make(memory),
+                    .documents = buffer_make(memory, sizeof(json_document *)),
+                    .door_list = buffer_make(memory, sizeof(door_entry)),
+                    .errors_before = j->report->errors,
+                    .models = models_make(memory),
+                    .object = SCENE_NONE};
+    name_table *const tables[] = {&s.zones, &s.portals, &s.doors, &s.movers, &s.paths, &s.moved};
+    const size_t table_count = sizeof tables / sizeof *tables;
+    for (size_t t = 0; t < table_count; ++t) *tables[t] = name_table_make(memory);
+    const result done = read_passes(&s);
+    for (size_t t = 0; t < table_count; ++t) name_table_free(tables[t]);
+    documents_free(&s);
+    models_free(&s);
+    buffer_free(&s.door_list);
+    arena_free(&s.memory);
+    return done;
+}

@@ -1,0 +1,137 @@
+// The application's API, opening: a file, the cullers that it names, and the world of them. See api/portcullis/scene.h.
+// SPDX-License-Identifier: MIT
+#define _GNU_SOURCE
+#include "library.h"
+
+#include "../import/import.h"
+
+#include <dlfcn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { FOLDERS_MOST = 64, PATH_BYTES = 4096 };
+
+typedef struct folder_list {
+    const char *names[FOLDERS_MOST];
+    uint32_t count;
+} folder_list;
+
+cull_result library_result(result done)
+{
+    return done == RESULT_OK ? CULL_OK : done == RESULT_NO_MEMORY ? CULL_ERR_MEMORY : CULL_ERR_ZONE;
+}
+
+// ---- Where the report's lines go ----
+
+static void tell_log(void *user, report_level level, const char *text)
+{
+    const cull_scene *s = user;
+    const cull_log_level as = level == REPORT_ERROR ? CULL_LOG_ERROR : level == REPORT_WARNING ? CULL_LOG_WARN : CULL_LOG_INFO;
+    s->options.log(s->options.user, as, text);
+}
+
+// ---- Where plugins are looked for ----
+
+static void add_folder(folder_list *f, const char *name)
+{
+    if (name && *name && f->count < FOLDERS_MOST) f->names[f->count++] = name;
+}
+
+// An empty part would mean the current folder to other tools; here it means nothing.
+static void add_path_variable(cull_scene *s, folder_list *f)
+{
+    const char *at = getenv("PORTCULLIS_PLUGIN_PATH");
+    while (at && *at) {
+        const size_t length = strcspn(at, ":");
+        add_folder(f, length ? arena_text(&s->texts, at, length) : NULL);
+        at += length + (at[length] == ':');
+    }
+}
+
+// Beside this library, as installed and as built; where it is linked into the executable, beside that.
+static void add_beside_library(cull_scene *s, folder_list *f)
+{
+    static const char *const places[] = {"portcullis", "../lib/portcullis", "../plugins"};
+    static const char here = 0; // an object of this library, to ask where it was loaded from
+    Dl_info info;
+    char path[PATH_BYTES];
+    if (!dladdr(&here, &info) || !info.dli_fname) return;
+    const char *slash = strrchr(info.dli_fname, '/');
+    if (!slash) return; // found by a bare name: no folder to go by
+    for (size_t i = 0; i < sizeof places / sizeof *places; ++i) {
+        const int length = snprintf(path, sizeof path, "%.*s/%s", (int)(slash - info.dli_fname), info.dli_fname, places[i]);
+        if (length > 0 && (size_t)length < sizeof path) add_folder(f, arena_text(&s->texts, path, (size_t)length));
+    }
+}
+
+static result open_plugins(cull_scene *s, const cull_scene_options *o)
+{
+    folder_list f = {0};
+    for (uint32_t i = 0; i < o->plugin_folder_count; ++i) add_folder(&f, o->plugin_folders[i]);
+    add_path_variable(s, &f);
+    add_beside_library(s, &f);
+    const loader_options options = {.folders = f.names, .folder_count = f.count};
+    return loader_open(&options, s->memory, &s->report, &s->plugins);
+}
+
+// ---- Chains: as the file names them ----
+
+static result parse_chain(cull_scene *s, const char *text, const chain_spec **out)
+{
+    chain_spec *spec = arena_push(&s->texts, 1, sizeof *spec);
+    if (!spec) return report_no_memory(&s->report, s->scene->path);
+    *out = spec;
+    return chain_parse(text, &s->texts, &s->report, spec);
+}
+
+static result open_world(cull_scene *s, const cull_scene_options *o)
+{
+    const uint32_t zones = s->scene->zone_count;
+    const chain_spec **chains = arena_push(&s->texts, zones, sizeof *chains), *usual = NULL;
+    if (!chains) return report_no_memory(&s->report, s->scene->path);
+    result done = parse_chain(s, o->chain ? o->chain : "frustum", &usual);
+    for (uint32_t z = 0; z < zones && done == RESULT_OK; ++z) {
+        chains[z] = NULL;
+        if (s->scene->zones[z].chain) done = parse_chain(s, s->scene->zones[z].chain, &chains[z]);
+    }
+    if (done != RESULT_OK) return done;
+    const world_request q = {.scene = s->scene, .plugins = s->plugins, .services = &s->services, .chains = chains, .chain = usual,
+                             .more_movers = o->more_movers};
+    return world_open(&q, &s->report, &s->world);
+}
+
+cull_result cull_scene_open(const char *path, const cull_scene_options *options, cull_scene **out)
+{
+    static const cull_scene_options usual = {.struct_size = sizeof usual};
+    const allocator *memory = allocator_heap();
+    const cull_scene_options *o = options ? options : &usual;
+    if (!path || !out || o->struct_size != sizeof usual) return CULL_ERR_OPTION;
+    cull_scene *s = memory_alloc_zeroed(memory, 1, sizeof *s);
+    if (!s) return CULL_ERR_MEMORY;
+    s->memory = memory;
+    s->options = *o;
+    s->report = o->log ? (report){.line = tell_log, .user = s} : report_to_stderr();
+    s->texts = arena_make(memory);
+    host_services_fill(&s->services, memory, &s->report);
+    const import_options import = {.doors = DOORS_SHUT};
+    result done = open_plugins(s, o);
+    if (done == RESULT_OK) done = import_scene(path, &import, memory, &s->report, &s->scene);
+    if (done == RESULT_OK) done = open_world(s, o);
+    if (done != RESULT_OK) {
+        cull_scene_close(s);
+        return library_result(done);
+    }
+    *out = s;
+    return CULL_OK;
+}
+
+void cull_scene_close(cull_scene *s)
+{
+    if (!s) return;
+    world_close(s->world);
+    scene_free(s->scene, s->memory);
+    loader_close(s->plugins);
+    arena_free(&s->texts);
+    memory_free(s->memory, s, 1, sizeof *s);
+}
