@@ -203,7 +203,8 @@ static result run_pass(run *b, uint32_t pass, uint32_t k)
     for (uint32_t v = 0; v < b->q->path->count; ++v) {
         strategy_view view;
         progress_tell(&b->bar, row->name);
-        result done = strategy_run_view(s, &(strategy_request){.view = v, .mode = RENDER_SHADED, .marks = has_truth || counts ? MARK_DRAWN : MARK_NOTHING}, b->r, &view);
+        const strategy_request request = {.view = v, .mode = RENDER_SHADED, .marks = has_truth || counts ? MARK_DRAWN : MARK_NOTHING};
+        result done = strategy_run_view(s, &request, b->r, &view);
         if (done != RESULT_OK) return done;
         if (counts) add_counts(row, s, &view);
         faults += view.faults;
@@ -244,7 +245,8 @@ static result run_passes(run *b)
 static result open_result(const bench_request *q, report *r, bench_result *out)
 {
     const scene *s = q->scene;
-    *out = (bench_result){.memory = q->services->memory, .row_count = q->strategy_count, .views = q->path->count, .zones = s->zone_count, .portals = s->portal_count,
+    *out = (bench_result){.memory = q->services->memory, .row_count = q->strategy_count, .views = q->path->count,
+                          .zones = s->zone_count, .portals = s->portal_count,
                           .pixels = (uint64_t)q->width_px * q->height_px, .items_total = s->item_count};
     out->rows = memory_alloc_zeroed(out->memory, q->strategy_count, sizeof *out->rows);
     if (!out->rows) return report_no_memory(r, NULL);

@@ -102,8 +102,8 @@ static json_t *entry_of(const bench_result *b, const bench_request *q, const ben
         {"cull_ns_mean", row->cull_ns_mean}, {"cull_ns_p95", row->cull_ns_p95}, {"cull_ns_p99", row->cull_ns_p99},
         {"portal_merges", (double)row->portal_merges}, {"limits_hit", (double)row->limits_hit}, {"stalls", (double)row->stalls},
         {"movers_drawn", row->movers_drawn}, {"build_ms", row->build_ms}, {"index_bytes", (double)row->index_bytes}, {"queries", row->queries},
-        {"steps", row->steps}, {"zones", row->zones}, {"volumes", row->volumes}, {"crossings", row->crossings}, {"swaps", (double)row->swaps}, {"faults", (double)row->faults}, {"plugins_opened", b->plugins_opened},
-        {"indices_built", row->indices_built}, {"gl_used", b->gl_used}};
+        {"steps", row->steps}, {"zones", row->zones}, {"volumes", row->volumes}, {"crossings", row->crossings}, {"swaps", (double)row->swaps},
+        {"faults", (double)row->faults}, {"plugins_opened", b->plugins_opened}, {"indices_built", row->indices_built}, {"gl_used", b->gl_used}};
     const counter of_gl[] = {{"gl_ms", row->gl_ms}, {"total_ms", row->total_ms}, {"draw_calls", row->draw_calls}, {"state_changes", row->state_changes}};
     const counter of_truth[] = {
         {"polygons_visible", row->polygons_visible}, {"polygons_items", row->polygons_items}, {"items_visible", row->items_visible}, {"floor", row->floor},

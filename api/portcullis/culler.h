@@ -301,7 +301,7 @@ typedef struct cull_query cull_query;   // one viewer's memory of it
 // select and filters may return CULL_MORE or CULL_WAIT. Verbs are NULL-able, one at least is there.
 typedef struct cull_plugin {
     const cull_descriptor *descriptor;
-    // [main] values[i] belongs to options[i], is never NULL and lives for the call only: copy what is kept. On failure
+    // [build] values[i] belongs to options[i], is never NULL and lives for the call only: copy what is kept. On failure
     // logs why and leaves *out untouched.
     cull_result (*create)(const cull_host *, const char *const *values, cull_culler **out);
     void (*destroy)(cull_culler *); // [main] no query open; also after a failed build

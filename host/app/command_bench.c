@@ -29,8 +29,8 @@ typedef struct arguments {
 
 static const struct argp_option options[] = {
     {"views", KEY_VIEWS, APP_VIEWS, 0, "the camera path; needed", 0},
-    {"culler", KEY_CULLER, "CHAIN|scene", 0, "a strategy: this chain in all zones, such as frustum or octree[leaf=64]+occlusion; scene: what the scene file names per zone, "
-     "frustum where it names none (default); may stand several times", 0},
+    {"culler", KEY_CULLER, "CHAIN|scene", 0, "a strategy: this chain in all zones, such as frustum or octree[leaf=64]+occlusion; "
+     "scene: what the scene file names per zone, frustum where it names none (default); may stand several times", 0},
     {"zone", KEY_ZONE, "NAME=CHAIN", 0, "in every strategy these zones take this chain; NAME may be a pattern such as cellar*; may stand several times", 0},
     {"swap", KEY_SWAP, "N", 0, "a further strategy swap/N: every N views each zone goes on to its chain of the next --culler, neighbours one apart", 0},
     {"size", KEY_SIZE, "WxH", 0, "of the picture (default 1280x720)", 0},
@@ -161,7 +161,8 @@ static result run_bench(app *a, const arguments *q, const camera_path *path, uin
     result done = make_strategies(a, q, strategies, &count);
     if (done != RESULT_OK) return done;
     if (q->images && mkdir(q->images, 0777) != 0 && errno != EEXIST) return report_error(&a->report, q->images, 0, "cannot make the folder: %s", strerror(errno));
-    const bench_request bench = {.scene = a->scene, .path = path, .strategies = strategies, .doors = app_doors_of(&q->doors), .plugins = a->plugins, .services = &a->services,
+    const bench_request bench = {.scene = a->scene, .path = path, .strategies = strategies, .doors = app_doors_of(&q->doors),
+                                 .plugins = a->plugins, .services = &a->services,
                                  .strategy_count = count, .width_px = q->size.width_px, .height_px = q->size.height_px, .repeat = q->repeat,
                                  .query_latency = q->latency, .truth = q->truth, .ids = q->ids, .images = q->images};
     const bench_labels labels = {scene_label(q->scene, &a->texts), path->name};

@@ -117,7 +117,8 @@ static result run_render(app *a, const arguments *q, const camera_path *path)
     if (done == RESULT_OK) done = chain_book_strategy(&book, q->culler, &strategy);
     chain_book_close(&book);
     if (done != RESULT_OK) return done;
-    const bench_request bench = {.scene = a->scene, .path = path, .strategies = &strategy, .strategy_count = 1, .doors = app_doors_of(&q->doors), .plugins = a->plugins, .services = &a->services, .repeat = 1,
+    const bench_request bench = {.scene = a->scene, .path = path, .strategies = &strategy, .strategy_count = 1, .doors = app_doors_of(&q->doors),
+                                 .plugins = a->plugins, .services = &a->services, .repeat = 1,
                                  .width_px = q->size.width_px, .height_px = q->size.height_px, .truth = BENCH_NO_TRUTH};
     const renderer_options options_of_gl = {.target = RENDERER_HEADLESS, .width_px = q->size.width_px, .height_px = q->size.height_px};
     renderer *g = NULL;

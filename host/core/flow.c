@@ -3,6 +3,8 @@
 // Invariant: a node is queued at most once at a time, so the ring holds them all.
 #include "flow_internal.h"
 
+#include <portcullis/box.h>
+
 #include <math.h>
 #include <string.h>
 
@@ -47,10 +49,27 @@ static void gate_make(flow *f, uint32_t portal)
     }
 }
 
+// Planes that this box lies inside of are left out of the zone's volumes: it holds the items, and where movers may come
+// the zone's hulls, without hulls everything.
+static cull_box box_with_movers(const scene *s, const zone_data *z)
+{
+    const scene_zone *zone = &s->zones[z->index];
+    cull_box box = z->zone.box;
+    if (!z->zone.mover_capacity) return box;
+    if (!zone->hull_count) return (cull_box){{-FLT_MAX, -FLT_MAX, -FLT_MAX}, {FLT_MAX, FLT_MAX, FLT_MAX}};
+    for (uint32_t h = zone->first_hull; h < zone->first_hull + zone->hull_count; h++) {
+        const double *low = s->hulls[h].min, *high = s->hulls[h].max;
+        const cull_box hull = {{(float)(low[0] - zone->origin[0]), (float)(low[1] - zone->origin[1]), (float)(low[2] - zone->origin[2])},
+                               {(float)(high[0] - zone->origin[0]), (float)(high[1] - zone->origin[1]), (float)(high[2] - zone->origin[2])}};
+        box = cull_box_union(box, hull);
+    }
+    return box;
+}
+
 static void places_make(flow *f, const zone_data *zones)
 {
     for (uint32_t z = 0; z < f->scene->zone_count; z++) {
-        f->places[z] = (view_place){.box = zones[z].zone.box, .radius = zones[z].zone.radius};
+        f->places[z] = (view_place){.box = box_with_movers(f->scene, &zones[z]), .radius = zones[z].zone.radius};
         memcpy(f->places[z].origin, f->scene->zones[z].origin, sizeof f->places[z].origin);
     }
     for (uint32_t p = 0; p < f->scene->portal_count; p++) gate_make(f, p);

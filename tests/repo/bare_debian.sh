@@ -81,7 +81,7 @@ offline sh -c 'cd /srv/portcullis && ./run build' >"$work/out" 2>"$work/err" || 
 if grep -q 'installing' "$work/err"; then fail "the second ./run build installs"; fi
 [ "$(tail -n 1 "$work/out")" = "$portcullis" ] || fail "the second ./run build ends in another line"
 offline sh -c 'cd /srv/portcullis && ./run demo' >"$work/out" 2>"$work/err" || { tail -n 60 "$work/err"; fail "./run demo"; }
-for file in table.txt bench.json demo.png demo.obj demo.views; do
+for file in table.txt bench.json demo.png demo.obj demo.views flagship_table.txt flagship.json flagship_60.png; do
     [ -s "$bare/srv/portcullis/out/demo/$file" ] || fail "./run demo wrote no $file"
 done
 grep -q frustum "$work/out" || fail "the demo's table has no frustum"
