@@ -42,7 +42,7 @@ typedef struct cull_scene_options {
 } cull_scene_options;
 
 // [any] Reads a .json, .map, .obj, .ply, .off, .stl or .boxes file, loads the cullers that it names and builds them.
-// options NULL: all zero.
+// Doors stand as the file says, those of a .map open. options NULL: all zero.
 CULL_API cull_result cull_scene_open(const char *path, const cull_scene_options *options, cull_scene **out);
 CULL_API void cull_scene_close(cull_scene *scene); // [main] its views too; NULL is fine
 

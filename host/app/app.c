@@ -102,15 +102,26 @@ int parse_doors(const char *text, door_state *out)
     return 1;
 }
 
-int app_doors_parse(const char *text, app_doors *out)
+int app_doors_parse(const char *text, doors_choice *out)
 {
-    out->is_given = (uint32_t)parse_doors(text, &out->state);
-    return (int)out->is_given;
+    static const char *const names[] = {"open", "shut", "scene"};
+    for (int i = 0; i < 3; ++i) {
+        if (strcmp(text, names[i]) != 0) continue;
+        *out = (doors_choice)i;
+        return 1;
+    }
+    return 0;
 }
 
-const door_state *app_doors_of(const app_doors *d)
+door_state app_doors_import(doors_choice d)
 {
-    return d->is_given ? &d->state : NULL;
+    return d == DOORS_ALL_SHUT ? DOORS_SHUT : DOORS_OPEN;
+}
+
+const door_state *app_doors_of(const doors_choice *d)
+{
+    static const door_state states[] = {DOORS_OPEN, DOORS_SHUT};
+    return *d == DOORS_OF_SCENE ? NULL : &states[*d];
 }
 
 const char *scene_label(const char *path, arena *texts)

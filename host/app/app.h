@@ -45,9 +45,10 @@ typedef struct app_size { uint32_t width_px, height_px; } app_size;
 int parse_size(const char *text, app_size *out);                                     // "1280x720"; 0 when it is none
 int parse_count(const char *text, uint32_t least, uint32_t most, uint32_t *out);     // 0 when it is none
 int parse_doors(const char *text, door_state *out);                                  // "open", "shut"
-typedef struct app_doors { door_state state; uint32_t is_given; } app_doors; // zeroed: as files have them, open in maps
-int app_doors_parse(const char *text, app_doors *out);                               // "open", "shut"; 0 when it is neither
-const door_state *app_doors_of(const app_doors *d);                                  // NULL: at rest
+typedef enum doors_choice { DOORS_ALL_OPEN, DOORS_ALL_SHUT, DOORS_OF_SCENE } doors_choice; // OF_SCENE: as its file says, open in maps
+int app_doors_parse(const char *text, doors_choice *out);                            // "open", "shut", "scene"; 0 when it is none
+door_state app_doors_import(doors_choice d);                                         // for import_options
+const door_state *app_doors_of(const doors_choice *d);                               // of all doors; NULL: at rest
 const char *scene_label(const char *path, arena *texts);                             // "a/b/e1m1.map" -> "e1m1"; NULL: no memory
 
 #endif

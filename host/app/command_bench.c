@@ -21,7 +21,7 @@ typedef struct arguments {
     zone_options zones;
     uint32_t culler_count, swap, repeat, latency;
     app_size size;
-    app_doors doors;
+    doors_choice doors;
     bench_truth truth;
     bench_ids ids;
     app_plugin_files plugins;
@@ -37,7 +37,7 @@ static const struct argp_option options[] = {
     {"repeat", KEY_REPEAT, "N", 0, "passes over the path (default 3)", 0},
     {"no-truth", KEY_NO_TRUTH, NULL, 0, "time only: no pictures, no GL unless a culler tests", 0},
     {"ids", KEY_IDS, NULL, 0, "writing the id of every drawn item counts as culling", 0},
-    {"doors", KEY_DOORS, "open|shut", 0, "how doors stand (default: open, but for those that a scene file has shut)", 0},
+    {"doors", KEY_DOORS, "open|shut|scene", 0, "how doors stand (default open; scene: as its file says)", 0},
     {"images", KEY_IMAGES, "DIR", 0, "write a picture of each strategy, and of its worst view", 0},
     {"query-latency", KEY_LATENCY, "L", 0, "an answer is readable L steps later (default 0)", 0},
     {"json", KEY_JSON, "FILE|-", 0, "results in Google Benchmark's shape", 0},
@@ -52,7 +52,7 @@ static void parse_numbers(int key, const char *text, struct argp_state *state)
     if (key == KEY_REPEAT && !parse_count(text, 1, 10000, &a->repeat)) argp_error(state, "--repeat takes 1 to 10000, not '%s'", text);
     if (key == KEY_LATENCY && !parse_count(text, 0, 64, &a->latency)) argp_error(state, "--query-latency takes 0 to 64, not '%s'", text);
     if (key == KEY_SWAP && !parse_count(text, 1, SWAP_VIEWS_MOST, &a->swap)) argp_error(state, "--swap takes 1 to 1000000 views, not '%s'", text);
-    if (key == KEY_DOORS && !app_doors_parse(text, &a->doors)) argp_error(state, "--doors takes open or shut, not '%s'", text);
+    if (key == KEY_DOORS && !app_doors_parse(text, &a->doors)) argp_error(state, "--doors takes open, shut or scene, not '%s'", text);
 }
 
 static void add_text(const char **list, uint32_t *count, uint32_t most, const char *text, struct argp_state *state)
@@ -193,7 +193,7 @@ int command_bench(int argc, char **argv)
     app a;
     camera_path path = {0};
     uint32_t failed = 0;
-    const import_options import = {.doors = q.doors.state};
+    const import_options import = {.doors = app_doors_import(q.doors)};
     result done = app_open(&a, &q.plugins);
     if (done == RESULT_OK) done = check_early(&a, &q);
     if (done == RESULT_OK) done = import_scene(q.scene, &import, a.memory, &a.report, &a.scene);

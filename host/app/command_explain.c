@@ -13,7 +13,7 @@ typedef struct arguments {
     uint32_t view, item;
     uint32_t has_item, with_truth;
     app_size size;
-    app_doors doors;
+    doors_choice doors;
     zone_options zones;
     app_plugin_files plugins;
 } arguments;
@@ -24,7 +24,7 @@ static const struct argp_option options[] = {
     {"item", KEY_ITEM, "N", 0, "global id: place in the scene file, from 0, movers behind all others; needed", 0},
     {"culler", KEY_CULLER, "CHAIN|scene", 0, "what culls (default scene: what the scene file names, frustum where it names none)", 0},
     {"zone", KEY_ZONE, "NAME=CHAIN", 0, "these zones take this chain; NAME may be a pattern such as cellar*; may stand several times", 0},
-    {"doors", KEY_DOORS, "open|shut", 0, "how doors stand (default: open, but for those that a scene file has shut)", 0},
+    {"doors", KEY_DOORS, "open|shut|scene", 0, "how doors stand (default open; scene: as its file says)", 0},
     {"size", KEY_SIZE, "WxH", 0, "of the picture (default 1280x720)", 0},
     {"truth", KEY_TRUTH, NULL, 0, "also draw the view with everything, and tell how many pixels the item owns", 0},
     {"plugin", KEY_PLUGIN, "FILE", 0, "look at this library first; may stand several times", 0},
@@ -37,7 +37,7 @@ static void parse_numbers(int key, const char *text, struct argp_state *state)
     if (key == KEY_VIEW && !parse_count(text, 0, UINT32_MAX - 1, &a->view)) argp_error(state, "--view takes a number from 0, not '%s'", text);
     if (key == KEY_ITEM && !parse_count(text, 0, UINT32_MAX - 1, &a->item)) argp_error(state, "--item takes a number from 0, not '%s'", text);
     if (key == KEY_SIZE && !parse_size(text, &a->size)) argp_error(state, "--size takes WxH of 1 to 8192, not '%s'", text);
-    if (key == KEY_DOORS && !app_doors_parse(text, &a->doors)) argp_error(state, "--doors takes open or shut, not '%s'", text);
+    if (key == KEY_DOORS && !app_doors_parse(text, &a->doors)) argp_error(state, "--doors takes open, shut or scene, not '%s'", text);
     a->has_item |= key == KEY_ITEM;
 }
 
@@ -161,7 +161,7 @@ int command_explain(int argc, char **argv)
     if (argp_parse(&parser, argc, argv, 0, NULL, &q) != 0) return EXIT_USAGE;
     app a;
     camera_path path = {0};
-    const import_options import = {.doors = q.doors.state};
+    const import_options import = {.doors = app_doors_import(q.doors)};
     result done = app_open(&a, &q.plugins);
     if (done == RESULT_OK) done = chains_check(&a, &q.culler, 1, &q.zones);
     if (done == RESULT_OK) done = import_scene(q.scene, &import, a.memory, &a.report, &a.scene);

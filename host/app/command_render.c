@@ -14,7 +14,7 @@ typedef struct arguments {
     const char *scene, *views, *culler, *out;
     picture_request picture;
     app_size size;
-    app_doors doors;
+    doors_choice doors;
     zone_options zones;
     app_plugin_files plugins;
 } arguments;
@@ -26,7 +26,7 @@ static const struct argp_option options[] = {
     {"zone", KEY_ZONE, "NAME=CHAIN", 0, "these zones take this chain; NAME may be a pattern such as cellar*; may stand several times", 0},
     {"mode", KEY_MODE, "shaded|items|zones|depth|overdraw|error", 0, "default shaded; error: missed pixels in magenta", 0},
     {"scissor", KEY_SCISSOR, NULL, 0, "cut what a zone draws to the rectangle that it is seen through", 0},
-    {"doors", KEY_DOORS, "open|shut", 0, "how doors stand (default: open, but for those that a scene file has shut)", 0},
+    {"doors", KEY_DOORS, "open|shut|scene", 0, "how doors stand (default open; scene: as its file says)", 0},
     {"size", KEY_SIZE, "WxH", 0, "of the picture (default 1280x720)", 0},
     {"plugin", KEY_PLUGIN, "FILE", 0, "look at this library first", 0},
     {"output", 'o', "FILE.png", 0, "where to; needed", 0},
@@ -71,7 +71,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         break;
     case KEY_SCISSOR: a->picture.scissor = SCISSOR_ZONES; break;
     case KEY_DOORS:
-        if (!app_doors_parse(text, &a->doors)) argp_error(state, "--doors takes open or shut, not '%s'", text);
+        if (!app_doors_parse(text, &a->doors)) argp_error(state, "--doors takes open, shut or scene, not '%s'", text);
         break;
     case KEY_SIZE:
         if (!parse_size(text, &a->size)) argp_error(state, "--size takes WxH of 1 to 8192, not '%s'", text);
@@ -135,7 +135,7 @@ int command_render(int argc, char **argv)
     if (argp_parse(&parser, argc, argv, 0, NULL, &q) != 0) return EXIT_USAGE;
     app a;
     camera_path path = {0};
-    const import_options import = {.doors = q.doors.state};
+    const import_options import = {.doors = app_doors_import(q.doors)};
     result done = app_open(&a, &q.plugins);
     if (done == RESULT_OK) done = file_can_write(q.out, &a.report);
     if (done == RESULT_OK) done = chains_check(&a, &q.culler, 1, &q.zones);

@@ -17,7 +17,7 @@ typedef struct arguments {
     const char *scene, *views, *culler, *out, *keys;
     uint32_t view, frames; // frames 0: until the window is closed
     app_size size;
-    door_state doors;
+    doors_choice doors;
     app_plugin_files plugins;
 } arguments;
 
@@ -25,7 +25,7 @@ static const struct argp_option options[] = {
     {"views", KEY_VIEWS, "FILE|auto:N|path:NAME", 0, "where to start (default auto:1)", 0},
     {"view", KEY_VIEW, "I", 0, "at which of its views, from 0 (default 0)", 0},
     {"culler", KEY_CULLER, "CHAIN", 0, "of zones whose file names none (default frustum)", 0},
-    {"doors", KEY_DOORS, "open|shut", 0, "how doors stand at first (default shut)", 0},
+    {"doors", KEY_DOORS, "open|shut|scene", 0, "how doors stand at first (default scene: as its file says)", 0},
     {"size", KEY_SIZE, "WxH", 0, "of the window (default 1280x720)", 0},
     {"plugin", KEY_PLUGIN, "FILE", 0, "look at this library first", 0},
     {"keys", KEY_KEYS, "TEXT", 0, "press these keys, one a frame, '.' none; the window ends behind the last unless --frames says more", 0},
@@ -52,7 +52,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         if (!parse_count(text, 1, 1000000, &a->frames)) argp_error(state, "--frames takes a number from 1 to 1,000,000, not '%s'", text);
         break;
     case KEY_DOORS:
-        if (!parse_doors(text, &a->doors)) argp_error(state, "--doors takes open or shut, not '%s'", text);
+        if (!app_doors_parse(text, &a->doors)) argp_error(state, "--doors takes open, shut or scene, not '%s'", text);
         break;
     case KEY_SIZE:
         if (!parse_size(text, &a->size)) argp_error(state, "--size takes WxH of 1 to 8192, not '%s'", text);
@@ -137,11 +137,18 @@ static void explore_close(explore *e)
     buffer_free(&e->faces);
 }
 
+static void set_doors(explore *e, doors_choice choice)
+{
+    const door_state *state = app_doors_of(&choice);
+    for (uint32_t d = 0; state && d < e->a->scene->door_count; ++d) world_set_door(e->w, d, *state);
+}
+
 static result explore_open(explore *e, const arguments *q)
 {
     const renderer_options o = {.target = RENDERER_WINDOW, .width_px = q->size.width_px, .height_px = q->size.height_px, .title = "Portcullis"};
     result done = list_chains(e);
     if (done == RESULT_OK) done = open_world(e, q->culler);
+    if (done == RESULT_OK) set_doors(e, q->doors);
     if (done == RESULT_OK) done = renderer_open(&o, e->a->memory, &e->a->report, &e->g);
     if (done == RESULT_OK) done = renderer_upload(e->g, e->a->scene, &e->a->report);
     if (done == RESULT_OK && scissor_open(e->a->scene, e->a->memory, &e->rectangles) != RESULT_OK) done = report_no_memory(&e->a->report, NULL);
@@ -193,11 +200,11 @@ static result run(explore *e, const arguments *q)
 int command_view(int argc, char **argv)
 {
     static const struct argp parser = {options, parse, "SCENE", "Flies through a scene in a window. H tells the keys.", NULL, NULL, NULL};
-    arguments q = {.views = "auto:1", .culler = "frustum", .out = "portcullis.png", .size = {1280, 720}, .doors = DOORS_SHUT};
+    arguments q = {.views = "auto:1", .culler = "frustum", .out = "portcullis.png", .size = {1280, 720}, .doors = DOORS_OF_SCENE};
     if (argp_parse(&parser, argc, argv, 0, NULL, &q) != 0) return EXIT_USAGE;
     app a;
     camera_path path = {0};
-    const import_options import = {.doors = q.doors};
+    const import_options import = {.doors = app_doors_import(q.doors)};
     result done = app_open(&a, &q.plugins);
     if (done == RESULT_OK) done = import_scene(q.scene, &import, a.memory, &a.report, &a.scene);
     if (done == RESULT_OK) done = camera_path_load(q.views, a.scene, (double)q.size.width_px / q.size.height_px, a.memory, &a.report, &path);

@@ -114,7 +114,7 @@ cull_result cull_scene_open(const char *path, const cull_scene_options *options,
     s->report = o->log ? (report){.line = tell_log, .user = s} : report_to_stderr();
     s->texts = arena_make(memory);
     host_services_fill(&s->services, memory, &s->report);
-    const import_options import = {.doors = DOORS_SHUT};
+    const import_options import = {.doors = DOORS_OPEN};
     result done = open_plugins(s, o);
     if (done == RESULT_OK) done = import_scene(path, &import, memory, &s->report, &s->scene);
     if (done == RESULT_OK) done = open_world(s, o);
