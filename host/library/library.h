@@ -16,6 +16,7 @@ struct cull_scene {
     loader *plugins;
     scene *scene;
     world *world;
+    cull_scene_view *views; // open ones, by next
 };
 
 struct cull_scene_view {
@@ -25,6 +26,7 @@ struct cull_scene_view {
     camera camera;         // of the last frame, for explain
     frame_input input;
     uint32_t frame;
+    cull_scene_view *next;
 };
 
 cull_result library_result(result done); // what the API returns for it

@@ -129,6 +129,7 @@ cull_result cull_scene_open(const char *path, const cull_scene_options *options,
 void cull_scene_close(cull_scene *s)
 {
     if (!s) return;
+    while (s->views) cull_scene_view_close(s->views);
     world_close(s->world);
     scene_free(s->scene, s->memory);
     loader_close(s->plugins);

@@ -9,6 +9,8 @@ cull_result cull_scene_view_open(cull_scene *s, cull_scene_view **out)
     cull_scene_view *v = memory_alloc_zeroed(s->memory, 1, sizeof *v);
     if (!v) return CULL_ERR_MEMORY;
     v->owner = s;
+    v->next = s->views;
+    s->views = v;
     v->zones = memory_alloc_zeroed(s->memory, s->scene->zone_count, sizeof *v->zones);
     result done = v->zones ? world_view_open(s->world, VIEWER_CHECK_BOUNDS, &s->report, &v->view) : report_no_memory(&s->report, s->scene->path);
     if (done != RESULT_OK) {
@@ -22,7 +24,10 @@ cull_result cull_scene_view_open(cull_scene *s, cull_scene_view **out)
 void cull_scene_view_close(cull_scene_view *v)
 {
     if (!v) return;
-    const cull_scene *s = v->owner;
+    cull_scene *s = v->owner;
+    cull_scene_view **link = &s->views;
+    while (*link != v) link = &(*link)->next;
+    *link = v->next;
     world_view_close(v->view);
     memory_free(s->memory, v->zones, s->scene->zone_count, sizeof *v->zones);
     memory_free(s->memory, v, 1, sizeof *v);

@@ -303,7 +303,7 @@ static void includes_that_multiply_are_stopped(void **state)
 {
     (void)state;
     memory_file files[20] = {{0}};
-    char names[20][16], texts[20][256];
+    char names[20][24], texts[20][256];
     for (int i = 0; i < 18; ++i) { // each includes the next twice: 2^18 files
         snprintf(names[i], sizeof names[i], "%d.json", i);
         snprintf(texts[i], sizeof texts[i], HEAD "\"include\": [{\"file\": \"%d.json\", \"name\": \"a\"}, {\"file\": \"%d.json\", \"name\": \"b\"}]}", i + 1, i + 1);
