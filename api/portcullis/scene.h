@@ -28,23 +28,27 @@ extern "C" {
 typedef struct cull_scene cull_scene;
 typedef struct cull_scene_view cull_scene_view;
 
-// Results are cull_result: CULL_OK, CULL_ERR_MEMORY, or CULL_ERR_ZONE for bad data and names that are not there,
-// CULL_ERR_OPTION for a chain or camera that is
-// refused and a struct_size that is not this header's. Each failure gives one line to `log` first and changes nothing.
+// Results are cull_result: CULL_OK, CULL_ERR_MEMORY, CULL_ERR_ZONE for bad data and for zones, doors, items and movers that
+// are not there, CULL_ERR_OPTION for arguments: a chain or camera that is refused, a struct_size that this library does
+// not know, a reserved field or an unknown flag that is not 0. Each failure gives one line to `log` first and changes nothing.
+// Pointers are never NULL but where it says so; a NULL scene or view is a bug of the caller's.
+// Growth: structs with a struct_size get new fields at their end only; the library takes every size that a released
+// header had, reads no more than it is told and leaves the rest at its default. Others never change.
 typedef struct cull_scene_options {
     uint32_t struct_size;              // sizeof(cull_scene_options)
     uint32_t more_movers;              // room for movers that cull_scene_mover_add adds
     const char *chain;                 // of zones whose file names none; NULL: "frustum"
     const char *const *plugin_folders; // looked in before the usual ones
     uint32_t plugin_folder_count, reserved;
-    void (*log)(void *user, cull_log_level level, const char *line); // NULL: stderr
+    // NULL: stderr. Called from whatever thread calls the library, views' and builders' threads too, also inside a frame.
+    void (*log)(void *user, cull_log_level level, const char *line);
     void *user;
 } cull_scene_options;
 
 // [any] Reads a .json, .map, .obj, .ply, .off, .stl or .boxes file, loads the cullers that it names and builds them.
 // Doors stand as the file says, those of a .map open. options NULL: all zero.
 CULL_API cull_result cull_scene_open(const char *path, const cull_scene_options *options, cull_scene **out);
-CULL_API void cull_scene_close(cull_scene *scene); // [main] its views too; NULL is fine
+CULL_API void cull_scene_close(cull_scene *scene); // [main] its views too, not its swaps: drop those first; NULL is fine
 
 // ---- What is in it [any] ----
 typedef struct cull_scene_info {
@@ -66,7 +70,7 @@ CULL_API uint32_t cull_scene_zones_of_box(const cull_scene *scene, const double 
 // The present chain of the zone serves until the new one is built, and stays when the new one fails.
 CULL_API cull_result cull_scene_set_chain(cull_scene *scene, uint32_t zone, const char *chain);
 // The same in two steps: building [any], beside views that are being culled; then putting in place [main]. commit takes
-// the swap, whatever it returns; drop is for one that is not wanted any more.
+// the swap, whatever it returns (CULL_ERR_OPTION: it is another scene's); drop [main] is for one that is not wanted any more.
 typedef struct cull_scene_swap cull_scene_swap;
 CULL_API cull_result cull_scene_swap_build(const cull_scene *scene, uint32_t zone, const char *chain, cull_scene_swap **out);
 CULL_API cull_result cull_scene_swap_commit(cull_scene *scene, cull_scene_swap *swap);
@@ -82,13 +86,14 @@ CULL_API cull_result cull_scene_mover_remove(cull_scene *scene, uint32_t mover);
 
 // ---- Views ----
 CULL_API cull_result cull_scene_view_open(cull_scene *scene, cull_scene_view **out); // [main] a viewer with history of its own
-CULL_API void cull_scene_view_close(cull_scene_view *view);                         // [main] NULL is fine
+CULL_API void cull_scene_view_close(cull_scene_view *view);                         // [main] before its scene; NULL is fine
 
 typedef struct cull_camera {
+    uint32_t struct_size, reserved;   // sizeof(cull_camera), 0
     double eye[3], forward[3], up[3]; // forward, up: need not be unit vectors or perpendicular
     double fovy_deg, aspect;          // aspect: width / height
     double near_m, far_m;             // far_m may be infinite
-    uint32_t width_px, height_px;
+    uint32_t width_px, height_px;     // 1 .. 65,536
     cull_purpose purpose;
     uint32_t flags; // CULL_VIEW_*
 } cull_camera;
@@ -101,7 +106,8 @@ typedef struct cull_zone_runs { // what is seen of a zone
 typedef struct cull_visible {
     uint32_t struct_size;        // sizeof(cull_visible), set by the caller
     uint32_t zone_count, mover_count, reserved;
-    const cull_zone_runs *zones; // near to far. An item that several zones list is there once. Valid until the view's next frame
+    const cull_zone_runs *zones; // near to far. An item that several zones list is there once.
+                                 // Valid until the view's next frame or the next commit of a chain
     const uint32_t *movers;      // numbers, each once
     // Statistics of the frame.
     double cull_ns;
@@ -118,8 +124,9 @@ CULL_API cull_result cull_scene_cull(cull_scene_view *view, const cull_camera *c
 CULL_API uint32_t cull_scene_zone_item_count(const cull_scene *scene, uint32_t zone);
 CULL_API void cull_scene_order(const cull_scene *scene, uint32_t zone, uint32_t *items);
 typedef struct cull_scene_item {
+    uint32_t struct_size, reserved; // sizeof(cull_scene_item), set by the caller
     double min[3], max[3]; // world
-    uint32_t polygon_count, triangle_count, flags, reserved; // flags: CULL_ITEM_*
+    uint32_t polygon_count, triangle_count, flags, object; // flags: CULL_ITEM_*
     const char *material;
 } cull_scene_item;
 CULL_API cull_result cull_scene_item_get(const cull_scene *scene, uint32_t item, cull_scene_item *out);

@@ -31,4 +31,11 @@ struct cull_scene_view {
 
 cull_result library_result(result done); // what the API returns for it
 
+#if defined(__GNUC__)
+__attribute__((format(printf, 3, 4)))
+#endif
+// One line to the scene's log, from any thread; returns `code`. scene NULL: to stderr.
+cull_result
+library_refuse(const cull_scene *scene, cull_result code, const char *format, ...);
+
 #endif

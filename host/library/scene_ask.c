@@ -8,7 +8,9 @@
 
 cull_result cull_scene_describe(const cull_scene *s, cull_scene_info *out)
 {
-    if (out->struct_size != sizeof *out) return CULL_ERR_OPTION;
+    if (out->struct_size != sizeof *out)
+        return library_refuse(s, CULL_ERR_OPTION, "cull_scene_info: struct_size %u is not %zu; build against this library's scene.h",
+                              out->struct_size, sizeof *out);
     const scene *sc = s->scene;
     const cull_box b = sc->whole.box;
     const float low[3] = {b.min.x, b.min.y, b.min.z}, high[3] = {b.max.x, b.max.y, b.max.z};
@@ -17,7 +19,7 @@ cull_result cull_scene_describe(const cull_scene *s, cull_scene_info *out)
     out->door_count = sc->door_count;
     out->item_count = sc->item_count;
     out->mover_count = sc->mover_count;
-    out->mover_capacity = movers_counts(world_movers(s->world)).capacity;
+    out->mover_capacity = sc->mover_count + s->options.more_movers;
     for (int k = 0; k < 3; ++k) {
         out->min[k] = sc->whole.origin[k] + (double)low[k];
         out->max[k] = sc->whole.origin[k] + (double)high[k];
@@ -72,11 +74,19 @@ void cull_scene_order(const cull_scene *s, uint32_t zone, uint32_t *items)
 cull_result cull_scene_item_get(const cull_scene *s, uint32_t item, cull_scene_item *out)
 {
     const scene *sc = s->scene;
-    if (item >= sc->item_count) return CULL_ERR_ZONE;
+    if (out->struct_size != sizeof *out || out->reserved)
+        return library_refuse(s, CULL_ERR_OPTION,
+                              "cull_scene_item: struct_size %u is not %zu, or reserved is not 0; build against this library's scene.h",
+                              out->struct_size, sizeof *out);
+    if (item >= sc->item_count) return library_refuse(s, CULL_ERR_ZONE, "item %u: the scene has %u, counted from 0", item, sc->item_count);
     const cull_box b = cull_box_at(&sc->boxes, item);
     const float low[3] = {b.min.x, b.min.y, b.min.z}, high[3] = {b.max.x, b.max.y, b.max.z};
-    *out = (cull_scene_item){.polygon_count = sc->items[item].polygon_count, .triangle_count = sc->items[item].index_count / 3,
-                             .flags = sc->items[item].flags, .material = sc->materials[sc->items[item].material].name};
+    *out = (cull_scene_item){.struct_size = sizeof *out,
+                             .polygon_count = sc->items[item].polygon_count,
+                             .triangle_count = sc->items[item].index_count / 3,
+                             .flags = sc->items[item].flags,
+                             .object = sc->items[item].object,
+                             .material = sc->materials[sc->items[item].material].name};
     for (int k = 0; k < 3; ++k) {
         out->min[k] = sc->whole.origin[k] + (double)low[k];
         out->max[k] = sc->whole.origin[k] + (double)high[k];

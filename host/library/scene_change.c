@@ -5,29 +5,30 @@
 #include <math.h>
 
 struct cull_scene_swap {
-    const allocator *memory;
+    const cull_scene *owner;
     world_swap *swap;
 };
 
-static result swap_build(const cull_scene *s, uint32_t zone, const char *chain, report *r, world_swap **out)
+static result swap_build(const cull_scene *s, uint32_t zone, const char *chain, world_swap **out)
 {
-    if (zone >= s->scene->zone_count) return report_error(r, s->scene->path, 0, "zone %u: the scene has %u, counted from 0", zone, s->scene->zone_count);
+    report r = {.line = s->report.line, .user = s->report.user}; // building may run beside views: the scene's counters are not touched
     arena texts = arena_make(s->memory);
     chain_spec spec;
-    result done = chain_parse(chain, &texts, r, &spec);
-    if (done == RESULT_OK) done = world_swap_build(s->world, zone, &spec, r, out);
+    result done = chain_parse(chain, &texts, &r, &spec);
+    if (done == RESULT_OK) done = world_swap_build(s->world, zone, &spec, &r, out);
     arena_free(&texts);
     return done;
 }
 
-// Building may run beside views: its report is its own, the counters of the scene's are not touched.
 cull_result cull_scene_swap_build(const cull_scene *s, uint32_t zone, const char *chain, cull_scene_swap **out)
 {
-    report r = {.line = s->report.line, .user = s->report.user};
+    if (zone >= s->scene->zone_count)
+        return library_refuse(s, CULL_ERR_ZONE, "zone %u: the scene has %u, counted from 0", zone, s->scene->zone_count);
+    if (!chain || !out) return library_refuse(s, CULL_ERR_OPTION, "a swap takes a chain and a place for itself");
     cull_scene_swap *swap = memory_alloc_zeroed(s->memory, 1, sizeof *swap);
-    if (!swap) return CULL_ERR_MEMORY;
-    swap->memory = s->memory;
-    const result done = swap_build(s, zone, chain, &r, &swap->swap);
+    if (!swap) return library_refuse(s, CULL_ERR_MEMORY, "out of memory");
+    swap->owner = s;
+    const result done = swap_build(s, zone, chain, &swap->swap);
     if (done != RESULT_OK) {
         memory_free(s->memory, swap, 1, sizeof *swap);
         return done == RESULT_NO_MEMORY ? CULL_ERR_MEMORY : CULL_ERR_OPTION;
@@ -38,8 +39,12 @@ cull_result cull_scene_swap_build(const cull_scene *s, uint32_t zone, const char
 
 cull_result cull_scene_swap_commit(cull_scene *s, cull_scene_swap *swap)
 {
+    if (swap->owner != s) {
+        cull_scene_swap_drop(swap);
+        return library_refuse(s, CULL_ERR_OPTION, "a swap that was built for another scene; it is dropped");
+    }
     const result done = world_swap_commit(s->world, swap->swap, &s->report);
-    memory_free(swap->memory, swap, 1, sizeof *swap);
+    memory_free(s->memory, swap, 1, sizeof *swap);
     return library_result(done);
 }
 
@@ -47,7 +52,7 @@ void cull_scene_swap_drop(cull_scene_swap *swap)
 {
     if (!swap) return;
     world_swap_drop(swap->swap);
-    memory_free(swap->memory, swap, 1, sizeof *swap);
+    memory_free(swap->owner->memory, swap, 1, sizeof *swap);
 }
 
 cull_result cull_scene_set_chain(cull_scene *s, uint32_t zone, const char *chain)
@@ -59,29 +64,28 @@ cull_result cull_scene_set_chain(cull_scene *s, uint32_t zone, const char *chain
 
 cull_result cull_scene_set_door(cull_scene *s, uint32_t door, uint32_t is_open)
 {
-    if (door >= s->scene->door_count || is_open > 1) {
-        report_error(&s->report, s->scene->path, 0, "door %u, state %u: the scene has %u doors, counted from 0; 1 opens, 0 shuts", door, is_open, s->scene->door_count);
-        return CULL_ERR_ZONE;
-    }
+    if (door >= s->scene->door_count)
+        return library_refuse(s, CULL_ERR_ZONE, "door %u: the scene has %u, counted from 0", door, s->scene->door_count);
+    if (is_open > 1) return library_refuse(s, CULL_ERR_OPTION, "door state %u: 1 opens, 0 shuts", is_open);
     world_set_door(s->world, door, is_open ? DOORS_OPEN : DOORS_SHUT);
     return CULL_OK;
 }
 
 cull_result cull_scene_set_time(cull_scene *s, double time_s)
 {
-    if (!isfinite(time_s)) {
-        report_error(&s->report, s->scene->path, 0, "a time that is not finite; the movers stay");
-        return CULL_ERR_ZONE;
-    }
+    if (!isfinite(time_s)) return library_refuse(s, CULL_ERR_OPTION, "a time that is not finite; the movers stay");
     world_set_time(s->world, time_s);
     return CULL_OK;
 }
 
-static cull_result tell_mover(cull_scene *s, result done, const char *what)
+static cull_result tell_mover(const cull_scene *s, result done, const char *what)
 {
-    if (done == RESULT_BAD_INPUT)
-        report_error(&s->report, s->scene->path, 0, "a mover can't be %s: no such mover, no room, or a box that is not finite, not within 1e9 m or inside out; nothing changed", what);
-    return library_result(done);
+    if (done == RESULT_OK) return CULL_OK;
+    return library_refuse(
+        s, CULL_ERR_ZONE,
+        "a mover can't be %s: no such mover of the application, no room, or a box that is not finite, not within 1e9 m or inside out; "
+        "nothing changed",
+        what);
 }
 
 cull_result cull_scene_mover_add(cull_scene *s, const double min[3], const double max[3], uint32_t *out_mover)

@@ -6,6 +6,7 @@
 #include "../import/import.h"
 
 #include <dlfcn.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -20,6 +21,18 @@ typedef struct folder_list {
 cull_result library_result(result done)
 {
     return done == RESULT_OK ? CULL_OK : done == RESULT_NO_MEMORY ? CULL_ERR_MEMORY : CULL_ERR_ZONE;
+}
+
+cull_result library_refuse(const cull_scene *s, cull_result code, const char *format, ...)
+{
+    char text[512];
+    va_list rest;
+    va_start(rest, format);
+    vsnprintf(text, sizeof text, format, rest);
+    va_end(rest);
+    report r = s ? (report){.line = s->report.line, .user = s->report.user} : report_to_stderr(); // a copy: counters are one thread's
+    report_error(&r, s && s->scene ? s->scene->path : NULL, 0, "%s", text);
+    return code;
 }
 
 // ---- Where the report's lines go ----
@@ -85,20 +98,29 @@ static result parse_chain(cull_scene *s, const char *text, const chain_spec **ou
     return chain_parse(text, &s->texts, &s->report, spec);
 }
 
-static result open_world(cull_scene *s, const cull_scene_options *o)
+static result open_world(cull_scene *s, const cull_scene_options *o, cull_result *code)
 {
     const uint32_t zones = s->scene->zone_count;
     const chain_spec **chains = arena_push(&s->texts, zones, sizeof *chains), *usual = NULL;
     if (!chains) return report_no_memory(&s->report, s->scene->path);
+    *code = CULL_ERR_OPTION; // from here on it is chains that are wrong
     result done = parse_chain(s, o->chain ? o->chain : "frustum", &usual);
     for (uint32_t z = 0; z < zones && done == RESULT_OK; ++z) {
         chains[z] = NULL;
         if (s->scene->zones[z].chain) done = parse_chain(s, s->scene->zones[z].chain, &chains[z]);
     }
     if (done != RESULT_OK) return done;
-    const world_request q = {.scene = s->scene, .plugins = s->plugins, .services = &s->services, .chains = chains, .chain = usual,
-                             .more_movers = o->more_movers};
+    const world_request q = {
+        .scene = s->scene, .plugins = s->plugins, .services = &s->services, .chains = chains, .chain = usual, .more_movers = o->more_movers};
     return world_open(&q, &s->report, &s->world);
+}
+
+static result open_all(cull_scene *s, const char *path, const cull_scene_options *o, cull_result *code)
+{
+    const import_options import = {.doors = DOORS_OPEN};
+    result done = open_plugins(s, o);
+    if (done == RESULT_OK) done = import_scene(path, &import, s->memory, &s->report, &s->scene);
+    return done == RESULT_OK ? open_world(s, o, code) : done;
 }
 
 cull_result cull_scene_open(const char *path, const cull_scene_options *options, cull_scene **out)
@@ -106,21 +128,23 @@ cull_result cull_scene_open(const char *path, const cull_scene_options *options,
     static const cull_scene_options usual = {.struct_size = sizeof usual};
     const allocator *memory = allocator_heap();
     const cull_scene_options *o = options ? options : &usual;
-    if (!path || !out || o->struct_size != sizeof usual) return CULL_ERR_OPTION;
+    if (!path || !out) return library_refuse(NULL, CULL_ERR_OPTION, "cull_scene_open takes a path and a place for the scene");
+    if (o->struct_size != sizeof usual || o->reserved)
+        return library_refuse(NULL, CULL_ERR_OPTION,
+                              "cull_scene_options: struct_size %u is not %zu, or reserved is not 0; build against this library's scene.h",
+                              o->struct_size, sizeof usual);
     cull_scene *s = memory_alloc_zeroed(memory, 1, sizeof *s);
-    if (!s) return CULL_ERR_MEMORY;
+    if (!s) return library_refuse(NULL, CULL_ERR_MEMORY, "out of memory");
     s->memory = memory;
     s->options = *o;
     s->report = o->log ? (report){.line = tell_log, .user = s} : report_to_stderr();
     s->texts = arena_make(memory);
     host_services_fill(&s->services, memory, &s->report);
-    const import_options import = {.doors = DOORS_OPEN};
-    result done = open_plugins(s, o);
-    if (done == RESULT_OK) done = import_scene(path, &import, memory, &s->report, &s->scene);
-    if (done == RESULT_OK) done = open_world(s, o);
+    cull_result code = CULL_ERR_ZONE;
+    const result done = open_all(s, path, o, &code);
     if (done != RESULT_OK) {
         cull_scene_close(s);
-        return library_result(done);
+        return done == RESULT_NO_MEMORY ? CULL_ERR_MEMORY : code;
     }
     *out = s;
     return CULL_OK;

@@ -4,10 +4,12 @@
 
 #include <string.h>
 
+enum { PICTURE_MOST_PX = 65536 };
+
 cull_result cull_scene_view_open(cull_scene *s, cull_scene_view **out)
 {
     cull_scene_view *v = memory_alloc_zeroed(s->memory, 1, sizeof *v);
-    if (!v) return CULL_ERR_MEMORY;
+    if (!v) return library_refuse(s, CULL_ERR_MEMORY, "out of memory");
     v->owner = s;
     v->next = s->views;
     s->views = v;
@@ -39,7 +41,10 @@ static const char *take_camera(cull_scene_view *v, const cull_camera *c)
     memcpy(v->camera.eye, c->eye, sizeof c->eye);
     memcpy(v->camera.forward, c->forward, sizeof c->forward);
     memcpy(v->camera.up, c->up, sizeof c->up);
-    if (c->width_px == 0 || c->height_px == 0) return "the picture has no pixels";
+    if (c->struct_size != sizeof *c || c->reserved) return "struct_size is not this library's, or reserved is not 0; build against its scene.h";
+    if (c->width_px == 0 || c->height_px == 0 || c->width_px > PICTURE_MOST_PX || c->height_px > PICTURE_MOST_PX)
+        return "the picture is not 1 to 65,536 pixels wide and high";
+    if (c->flags & ~(uint32_t)CULL_VIEW_CUT) return "an unknown flag";
     if (c->purpose < CULL_VIEW_MAIN || c->purpose > CULL_VIEW_CAPTURE) return "the purpose is none of CULL_VIEW_MAIN .. CULL_VIEW_CAPTURE";
     return camera_fault(&v->camera);
 }
@@ -47,21 +52,31 @@ static const char *take_camera(cull_scene_view *v, const cull_camera *c)
 static void give_set(cull_scene_view *v, const visible_set *set, const frame_stats *t, cull_visible *out)
 {
     for (uint32_t i = 0; i < set->zone_count; ++i) v->zones[i] = (cull_zone_runs){set->zones[i].zone, set->zones[i].run_count, set->zones[i].runs};
-    *out = (cull_visible){.struct_size = sizeof *out, .zone_count = set->zone_count, .mover_count = set->mover_count, .zones = v->zones, .movers = set->movers,
-                          .cull_ns = t->cull_ns, .items = t->items_drawn, .zones_reached = t->zones, .volumes = t->volumes, .portals_tried = t->crossings,
-                          .portal_merges = t->portal_merges, .limits_hit = t->limits_hit, .faults = t->faults, .movers_tested = t->movers_tested, .steps = t->steps};
+    *out = (cull_visible){.struct_size = sizeof *out,
+                          .zone_count = set->zone_count,
+                          .mover_count = set->mover_count,
+                          .zones = v->zones,
+                          .movers = set->movers,
+                          .cull_ns = t->cull_ns,
+                          .items = t->items_drawn,
+                          .zones_reached = t->zones,
+                          .volumes = t->volumes,
+                          .portals_tried = t->crossings,
+                          .portal_merges = t->portal_merges,
+                          .limits_hit = t->limits_hit,
+                          .faults = t->faults,
+                          .movers_tested = t->movers_tested,
+                          .steps = t->steps};
 }
 
 cull_result cull_scene_cull(cull_scene_view *v, const cull_camera *c, cull_visible *out)
 {
-    if (out->struct_size != sizeof *out) return CULL_ERR_OPTION;
+    if (out->struct_size != sizeof *out)
+        return library_refuse(v->owner, CULL_ERR_OPTION, "cull_visible: struct_size %u is not %zu; build against this library's scene.h",
+                              out->struct_size, sizeof *out);
     const char *fault = take_camera(v, c);
-    if (fault) {
-        report r = {.line = v->owner->report.line, .user = v->owner->report.user}; // views run beside each other
-        *out = (cull_visible){.struct_size = sizeof *out};
-        report_error(&r, NULL, 0, "a camera that can't be used: %s", fault);
-        return CULL_ERR_OPTION;
-    }
+    *out = (cull_visible){.struct_size = sizeof *out};
+    if (fault) return library_refuse(v->owner, CULL_ERR_OPTION, "a camera that can't be used: %s", fault);
     visible_set set;
     frame_stats stats;
     v->input = (frame_input){.camera = &v->camera, .frame = {c->width_px, c->height_px, ++v->frame, c->flags, c->purpose}};

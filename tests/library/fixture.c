@@ -50,8 +50,8 @@ int api_bed_open(void **state)
     scratch_folder_make(&b->folder);
     scratch_folder_name(&b->folder, "api.json", b->path, sizeof b->path);
     scratch_folder_write(&b->folder, "api.json", scene_text, sizeof scene_text - 1);
-    b->options = (cull_scene_options){.struct_size = sizeof b->options, .more_movers = 100, .plugin_folders = folders, .plugin_folder_count = 1,
-                                      .log = keep_line, .user = b};
+    b->options = (cull_scene_options){
+        .struct_size = sizeof b->options, .more_movers = 100, .plugin_folders = folders, .plugin_folder_count = 1, .log = keep_line, .user = b};
     *state = b;
     if (cull_scene_open(b->path, &b->options, &b->scene) != CULL_OK || cull_scene_view_open(b->scene, &b->view) != CULL_OK) {
         fprintf(stderr, "%s", b->log);
@@ -72,8 +72,17 @@ int api_bed_close(void **state)
 cull_camera api_camera(double x, double z, double yaw_deg)
 {
     const double yaw = yaw_deg * 3.14159265358979323846 / 180;
-    return (cull_camera){.eye = {x, 1.6, z}, .forward = {sin(yaw), 0, -cos(yaw)}, .up = {0, 1, 0}, .fovy_deg = 60, .aspect = 1.5, .near_m = 0.0625,
-                         .far_m = 1000, .width_px = 600, .height_px = 400, .purpose = CULL_VIEW_MAIN};
+    return (cull_camera){.struct_size = sizeof(cull_camera),
+                         .eye = {x, 1.6, z},
+                         .forward = {sin(yaw), 0, -cos(yaw)},
+                         .up = {0, 1, 0},
+                         .fovy_deg = 60,
+                         .aspect = 1.5,
+                         .near_m = 0.0625,
+                         .far_m = 1000,
+                         .width_px = 600,
+                         .height_px = 400,
+                         .purpose = CULL_VIEW_MAIN};
 }
 
 int api_sees_item_at(const api_bed *b, const cull_visible *seen, const double p[3])
@@ -87,7 +96,7 @@ int api_sees_item_at(const api_bed *b, const cull_visible *seen, const double p[
         cull_scene_order(b->scene, zone->zone, order);
         for (uint32_t r = 0; r < zone->run_count; ++r)
             for (uint32_t place = zone->runs[r].first; place < zone->runs[r].first + zone->runs[r].count; ++place) {
-                cull_scene_item item;
+                cull_scene_item item = {.struct_size = sizeof item};
                 assert_true(place < count);
                 assert_int_equal(cull_scene_item_get(b->scene, order[place], &item), CULL_OK);
                 int inside = 1;

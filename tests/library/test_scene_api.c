@@ -80,7 +80,8 @@ static void a_chain_is_swapped_between_two_frames_and_a_bad_one_changes_nothing(
     assert_int_equal(cull_scene_set_chain(b->scene, hall, "nosuch"), CULL_ERR_OPTION);
     assert_non_null(strstr(b->log, "nosuch"));
     assert_int_equal(cull_scene_set_chain(b->scene, hall, "frustum[leaf"), CULL_ERR_OPTION);
-    assert_int_equal(cull_scene_set_chain(b->scene, 99, "none"), CULL_ERR_OPTION);
+    assert_int_equal(cull_scene_set_chain(b->scene, 99, "none"), CULL_ERR_ZONE);
+    assert_int_equal(cull_scene_set_chain(b->scene, hall, NULL), CULL_ERR_OPTION);
     const cull_visible seen = seen_from(b, 4, 4, -90);
     assert_true(api_sees_item_at(b, &seen, hall_crate));
 }
@@ -128,7 +129,7 @@ static void explanations_name_door_and_zone(void **state)
     api_bed *b = *state;
     char text[4096];
     uint32_t order[64];
-    cull_scene_item item;
+    cull_scene_item item = {.struct_size = sizeof item};
     assert_non_null(memset(text, 0, sizeof text));
     assert_true(cull_scene_explain(b->view, 0, text, sizeof text) > 0); // before any frame
     (void)seen_from(b, 4, 4, 90);
@@ -160,7 +161,7 @@ static void what_cannot_be_opened_is_told_in_one_line(void **state)
     assert_int_equal(cull_scene_open(b->path, &wrong, &none), CULL_ERR_OPTION);
     wrong = b->options;
     wrong.chain = "nosuch";
-    assert_int_not_equal(cull_scene_open(b->path, &wrong, &none), CULL_OK);
+    assert_int_equal(cull_scene_open(b->path, &wrong, &none), CULL_ERR_OPTION);
     assert_null(none);
     cull_camera c = api_camera(4, 4, 0);
     c.fovy_deg = NAN;
@@ -169,6 +170,39 @@ static void what_cannot_be_opened_is_told_in_one_line(void **state)
     assert_int_equal(seen.zone_count, 0);
     seen.struct_size = 3;
     assert_int_equal(cull_scene_cull(b->view, &c, &seen), CULL_ERR_OPTION);
+}
+
+static void a_swap_of_another_scene_is_refused(void **state)
+{
+    api_bed *b = *state;
+    cull_scene *other = NULL;
+    cull_scene_swap *swap = NULL;
+    assert_int_equal(cull_scene_open(b->path, &b->options, &other), CULL_OK);
+    assert_int_equal(cull_scene_swap_build(other, 1, "none", &swap), CULL_OK);
+    assert_int_equal(cull_scene_swap_commit(b->scene, swap), CULL_ERR_OPTION);
+    assert_non_null(strstr(b->log, "another scene"));
+    cull_scene_close(other);
+    const cull_visible seen = seen_from(b, 4, 4, -90);
+    assert_true(api_sees_item_at(b, &seen, hall_crate));
+}
+
+static void fields_that_mean_nothing_yet_must_be_zero(void **state)
+{
+    api_bed *b = *state;
+    cull_visible seen = {.struct_size = sizeof seen};
+    cull_camera cameras[4] = {api_camera(4, 4, 0), api_camera(4, 4, 0), api_camera(4, 4, 0), api_camera(4, 4, 0)};
+    cameras[0].flags = 0x80;
+    cameras[1].reserved = 1;
+    cameras[2].width_px = 4000000000u;
+    cameras[3].struct_size = 8;
+    for (int i = 0; i < 4; ++i) assert_int_equal(cull_scene_cull(b->view, &cameras[i], &seen), CULL_ERR_OPTION);
+    cull_scene_options options = b->options;
+    cull_scene *none = NULL;
+    options.reserved = 5;
+    assert_int_equal(cull_scene_open(b->path, &options, &none), CULL_ERR_OPTION);
+    cull_scene_item item = {.struct_size = sizeof item};
+    assert_int_equal(cull_scene_item_get(b->scene, 9999, &item), CULL_ERR_ZONE);
+    assert_non_null(strstr(b->log, "item 9999"));
 }
 
 // ---- Several views at once ----
@@ -219,6 +253,8 @@ int main(void)
         IN_BED(movers_are_seen_where_they_are),
         IN_BED(explanations_name_door_and_zone),
         IN_BED(what_cannot_be_opened_is_told_in_one_line),
+        IN_BED(a_swap_of_another_scene_is_refused),
+        IN_BED(fields_that_mean_nothing_yet_must_be_zero),
         IN_BED(four_views_in_two_threads_see_what_one_sees_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
