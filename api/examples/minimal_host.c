@@ -9,15 +9,10 @@
 static cull_camera camera_at(const cull_scene_info *info, uint32_t turn)
 {
     static const double ways[4][3] = {{1, 0, 0}, {0, 0, 1}, {-1, 0, 0}, {0, 0, -1}};
-    cull_camera c = {.struct_size = sizeof c,
-                     .up = {0, 1, 0},
-                     .fovy_deg = 60,
-                     .aspect = 16.0 / 9,
-                     .near_m = 0.0625,
-                     .far_m = 1000,
-                     .width_px = 1280,
-                     .height_px = 720,
-                     .purpose = CULL_VIEW_MAIN};
+    cull_camera c = {.struct_size = sizeof c, .up = {0, 1, 0}, .fovy_deg = 60, .aspect = 16.0 / 9, .near_m = 0.0625, .far_m = 1000};
+    c.width_px = 1280;
+    c.height_px = 720;
+    c.purpose = CULL_VIEW_MAIN;
     for (int k = 0; k < 3; ++k) {
         c.eye[k] = (info->min[k] + info->max[k]) / 2;
         c.forward[k] = ways[turn][k];
@@ -27,8 +22,7 @@ static cull_camera camera_at(const cull_scene_info *info, uint32_t turn)
 
 static void print_seen(const cull_scene *scene, const cull_visible *seen)
 {
-    printf("%llu items of %u zones, %u movers, %.1f us\n", (unsigned long long)seen->items, seen->zone_count, seen->mover_count,
-           seen->cull_ns / 1000);
+    printf("%llu items of %u zones, %u movers, %.1f us\n", (unsigned long long)seen->items, seen->zone_count, seen->mover_count, seen->cull_ns / 1000);
     for (uint32_t z = 0; z < seen->zone_count; ++z) { // a renderer draws these runs: item = order[place], first .. first + count - 1
         uint32_t items = 0;
         for (uint32_t i = 0; i < seen->zones[z].run_count; ++i) items += seen->zones[z].runs[i].count;
