@@ -26,6 +26,15 @@ static const char *counts_fault(const viewer *v, const cull_batch *batch, const 
     return batch->picture_count > b->max_pictures ? "more pictures than it told" : NULL;
 }
 
+// A slot that was not lent in this frame names no mover, or one that is elsewhere.
+static int are_lent(const viewer *v, cull_run run)
+{
+    const uint32_t *lent = v->slot_lent.items, items = v->chain->zone.item_count;
+    for (uint32_t i = run.first - items; i < run.first - items + run.count; ++i)
+        if (lent[i] != v->serial) return 0;
+    return 1;
+}
+
 // Items and movers in one run would be drawn as items that do not exist.
 static const char *runs_fault(const viewer *v, const cull_batch *batch, batch_check *check)
 {
@@ -40,7 +49,10 @@ static const char *runs_fault(const viewer *v, const cull_batch *batch, batch_ch
         if (batch->runs[i].first < items && batch->runs[i].first + batch->runs[i].count > items) return "a run over items and movers";
         check->mover_runs += batch->runs[i].first >= items;
     }
-    return check->mover_runs > movers ? "a mover given twice" : NULL; // more would not fit where they go apart from the items'
+    if (check->mover_runs > movers) return "a mover given twice";
+    for (uint32_t i = check->runs; movers && i < batch->run_count; ++i)
+        if (batch->runs[i].first >= items && !are_lent(v, batch->runs[i])) return "a mover that it was not lent";
+    return NULL;
 }
 
 static const char *repeat_fault(viewer *v, const cull_batch *batch, const batch_check *check)

@@ -20,7 +20,9 @@ void camera_axes(const camera *c, double right[3], double up[3], double back[3])
 void camera_clip_from_eye(const camera *c, double out[16]);
 
 typedef struct view_frame {
-    uint32_t width_px, height_px, frame, flags;
+    uint32_t width_px, height_px;
+    uint32_t frame; // rises with each frame of a view
+    uint32_t flags;
     cull_purpose purpose;
 } view_frame;
 

@@ -170,10 +170,12 @@ static int open_lists(viewer *v, const viewer_request *q)
         {&v->drawn, drawn_capacity(v), sizeof(cull_run)},
         {&v->answers, v->answer_capacity, sizeof(cull_answer)},
         {&v->slot_movers, movers < q->mover_numbers ? movers : 0, sizeof(uint32_t)},
+        {&v->slot_lent, movers, sizeof(uint32_t)},
         {&v->seen, keeps_seen ? seen_bytes(c) : 0, 1},
     };
     if (!open_planned(v, q, plans, sizeof plans / sizeof *plans)) return 0;
     memset(v->slot_movers.items, 0xFF, v->slot_movers.size); // SCENE_NONE
+    memset(v->slot_lent.items, 0, v->slot_lent.size);        // serials count from 1
     if (v->slot_count) v->slots = memory_alloc_zeroed(v->memory, v->slot_count, 1);
     return !v->slot_count || v->slots;
 }
@@ -217,7 +219,7 @@ void viewer_close(viewer *v)
         list_close(&v->stages[i].runs, v->memory);
     }
     list *const all[] = {&v->tests, &v->captures, &v->pictures, &v->drawn, &v->select_captures, &v->select_pictures, &v->keep_captures,
-                         &v->keep_pictures, &v->answers, &v->slot_movers, &v->seen};
+                         &v->keep_pictures, &v->answers, &v->slot_movers, &v->slot_lent, &v->seen};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) list_close(all[i], v->memory);
     memory_free(v->memory, v->slots, v->slot_count, 1);
     memory_free(v->memory, v, 1, viewer_bytes(v->chain));

@@ -93,6 +93,7 @@ typedef struct viewer {
     list select_captures, select_pictures, keep_captures, keep_pictures; // of a select behind which a filter stands
     list answers;
     list slot_movers;  // uint32_t: the mover that each slot names; empty: the slot is the number
+    list slot_lent;    // uint32_t: the frame's serial in which each slot was lent last
     list seen;         // as in the room, of a stepping culler
     uint8_t *slots;
     uint32_t slot_count, answer_capacity;
@@ -109,6 +110,8 @@ typedef struct viewer {
     cull_progress progress;
     const cull_run *out; // what is drawn so far
     uint32_t out_count, fresh;      // of them in this step: from `fresh` on
+    uint32_t is_crowded;            // they did not fit: an item was given twice
+    uint32_t full_serial;           // frame in which every slot was found taken
     uint32_t fresh_pictures;        // of the batch: from here on
     viewer_stage stages[];          // chain->stage_count
 } viewer;

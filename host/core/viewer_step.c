@@ -6,10 +6,13 @@
 
 // ---- What is drawn ----
 
+// There is room for all pieces of runs that give each item once: who needs more repeats himself.
 static void append_run(viewer *v, uint32_t first, uint32_t end)
 {
     cull_run *drawn = v->drawn.items;
-    if (end > first) drawn[v->out_count++] = (cull_run){first, end - first};
+    if (end <= first) return;
+    if (v->out_count < v->drawn.size / sizeof *drawn) drawn[v->out_count++] = (cull_run){first, end - first};
+    else v->is_crowded = 1;
 }
 
 static uint32_t first_shared_from(const viewer *v, uint32_t place)
@@ -248,6 +251,10 @@ static void run_last_stage(viewer *v, const viewer_frame *f)
         return;
     }
     take_runs(v, f, earlier_runs);
+    if (v->is_crowded) {
+        tell_fault(v, f, v->last, "an item given twice");
+        return;
+    }
     v->state = VIEWER_STEPS;
     if (v->progress == CULL_DONE) end_zone(v, f);
     count_batch(f, &v->batch, v->fresh_pictures);
@@ -261,7 +268,7 @@ void viewer_begin(viewer *v, const viewer_frame *f, const viewer_visit *seen)
     v->visit = (cull_visit){.view = seen->view, .volumes = seen->volumes, .volume_count = seen->volume_count,
                             .slots = v->slots, .scratch = v->room->scratch};
     v->progress = CULL_MORE;
-    v->out_count = v->fresh = v->fresh_pictures = 0;
+    v->out_count = v->fresh = v->fresh_pictures = v->is_crowded = 0;
     for (uint32_t i = 0; i < v->last; ++i) v->stages[i].run_count = 0;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "world_parts.h"
 
+#include <assert.h>
 #include <string.h>
 
 // ---- Opening ----
@@ -30,6 +31,8 @@ static result open_zones(world *w)
     return done;
 }
 
+static const double MOVER_REACH_M = 1e9; // as far as movers.h takes boxes
+
 static void place_mover(world *w, uint32_t mover, result (*place)(movers *, uint32_t, const double *, const double *))
 {
     const scene *s = w->scene;
@@ -38,7 +41,15 @@ static void place_mover(world *w, uint32_t mover, result (*place)(movers *, uint
     double min[3], max[3];
     scene_pose_at(s, mover, w->time_s, door == SCENE_NONE ? DOORS_SHUT : w->doors[door], &pose);
     scene_pose_box(s, mover, &pose, min, max);
-    if (place(w->movers, mover, min, max) == RESULT_OK) w->poses[mover] = pose; // else it stays where it was
+    w->poses[mover] = pose;
+    if (place(w->movers, mover, min, max) == RESULT_OK) return;
+    for (int k = 0; k < 3; ++k) { // too far out to be placed: then it may be anywhere, and is seen from everywhere
+        min[k] = -MOVER_REACH_M;
+        max[k] = MOVER_REACH_M;
+    }
+    const result anywhere = place(w->movers, mover, min, max);
+    assert(anywhere == RESULT_OK);
+    (void)anywhere;
 }
 
 static void shut_portals(world *w, uint32_t door)

@@ -67,20 +67,30 @@ static int is_in_zone(const world *w, uint32_t mover, uint32_t zone)
     return 0;
 }
 
+static uint32_t free_slot(const world *w, const viewer *v, uint32_t mover)
+{
+    const uint32_t *names = v->slot_movers.items;
+    const uint32_t capacity = v->chain->zone.mover_capacity;
+    for (uint32_t i = 0; i < capacity; ++i) {
+        const uint32_t slot = (mover + i) % capacity;
+        if (names[slot] == SCENE_NONE || !is_in_zone(w, names[slot], v->chain->data->index)) return slot;
+    }
+    return SCENE_NONE;
+}
+
 // The mover keeps its slot while it stays in the zone. SCENE_NONE: all are taken.
 static uint32_t slot_of(const world *w, viewer *v, uint32_t mover)
 {
     uint32_t *names = v->slot_movers.items;
     const uint32_t capacity = v->chain->zone.mover_capacity;
-    uint32_t free_slot = SCENE_NONE;
     if (!v->slot_movers.size) return mover < capacity ? mover : SCENE_NONE; // as many slots as numbers
-    for (uint32_t i = 0; i < capacity; ++i) {
-        const uint32_t slot = (mover + i) % capacity;
+    for (uint32_t slot = 0; slot < capacity; ++slot)
         if (names[slot] == mover) return slot;
-        if (free_slot == SCENE_NONE && (names[slot] == SCENE_NONE || !is_in_zone(w, names[slot], v->chain->data->index))) free_slot = slot;
-    }
-    if (free_slot != SCENE_NONE) names[free_slot] = mover;
-    return free_slot;
+    if (v->full_serial == v->serial) return SCENE_NONE; // none becomes free while a frame lasts
+    const uint32_t slot = free_slot(w, v, mover);
+    if (slot != SCENE_NONE) names[slot] = mover;
+    else v->full_serial = v->serial;
+    return slot;
 }
 
 static void lend(world_view *v, viewer *zone, const mover_block *b, uint32_t lane)
@@ -93,6 +103,7 @@ static void lend(world_view *v, viewer *zone, const mover_block *b, uint32_t lan
     }
     const cull_box box = {{b->min_x[lane], b->min_y[lane], b->min_z[lane]}, {b->max_x[lane], b->max_y[lane], b->max_z[lane]}};
     assert(v->lent_count < v->lent_capacity); // a mover stands in MOVER_ZONES_MOST zones
+    ((uint32_t *)zone->slot_lent.items)[slot] = zone->serial;
     if (!zone->visit.mover_count) zone->visit.movers = v->lent + v->lent_count;
     v->lent[v->lent_count++] = (cull_mover){box, zone->chain->zone.item_count + slot, 0};
     zone->visit.mover_count++;
