@@ -35,6 +35,12 @@ static void zone_twice(bad_step *s)
     s->batch->run_count = 2;
 }
 
+static void all_movers(bad_step *s) { last_run(s, s->zone->item_count, s->zone->mover_capacity); }
+static void quarter_often(bad_step *s)
+{
+    s->batch->run_count = 0;
+    for (int i = 0; i < 4; ++i) s->batch->runs[s->batch->run_count++] = (cull_run){0, s->zone->item_count / 4};
+}
 static void mover_over_edge(bad_step *s) { last_run(s, s->zone->item_count - 1, 2); }
 
 static void mover_twice(bad_step *s)
@@ -248,7 +254,7 @@ const bad_fault *bad_fault_find(const char *name)
 #define FAULT(f) {#f, f}
     static const bad_fault faults[] = {
         FAULT(run_wild), FAULT(run_of_a_mover), FAULT(run_past_end), FAULT(run_huge_first), FAULT(run_huge_count), FAULT(run_wraps), FAULT(run_empty),
-        FAULT(runs_too_many), FAULT(runs_endless), FAULT(item_twice), FAULT(zone_twice), FAULT(mover_over_edge), FAULT(mover_twice), FAULT(takes_back),
+        FAULT(runs_too_many), FAULT(runs_endless), FAULT(item_twice), FAULT(zone_twice), FAULT(mover_over_edge), FAULT(mover_twice), FAULT(all_movers), FAULT(quarter_often), FAULT(takes_back),
         FAULT(returns_odd), FAULT(returns_negative), FAULT(more_for_ever), FAULT(wait_for_ever),
         FAULT(test_given), FAULT(tests_too_many), FAULT(test_nan), FAULT(test_infinite), FAULT(test_inside_out),
         FAULT(capture_given), FAULT(captures_too_many), FAULT(capture_slot), FAULT(capture_nan), FAULT(capture_box), FAULT(capture_no_pixels),
