@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 // A pass walks the whole path with one strategy, so that a culler's history sees consecutive frames.
 #include "bench.h"
+#include "drawn.h"
 #include "images.h"
 #include "progress.h"
 #include "statistics.h"
@@ -14,9 +15,10 @@ typedef struct run {
     const bench_request *q;
     report *r;
     renderer *g;
-    truth truths[WALLS_COUNT]; // opened where a strategy is judged by it
+    truth truths[WALLS_MIXED]; // opened where a strategy is judged by it
     motion motion; // of the truth
     strategy *strategies;
+    truth *mixed; // by strategy, for those of WALLS_MIXED: which walls count depends on zones and turns
     bench_result *out;
     progress bar;
     double *scratch; // of views, and of repeats behind them
@@ -65,22 +67,41 @@ static result open_renderer(run *b)
     return RESULT_OK;
 }
 
-static uint32_t truth_is_needed(const run *b, walls w)
+static truth *truth_of(run *b, uint32_t k)
 {
-    for (uint32_t k = 0; k < b->q->strategy_count; ++k)
-        if (b->strategies[k].walls == w) return b->q->truth == BENCH_TRUTH;
-    return 0;
+    const walls w = b->strategies[k].walls;
+    return w == WALLS_MIXED ? &b->mixed[k] : &b->truths[w];
 }
 
-static result find_truth(run *b, walls w)
+static uint32_t truths_needed(run *b)
 {
-    const truth_request request = {b->q->scene, b->q->width_px, b->q->height_px, w};
-    result done = truth_open(&request, b->q->services->memory, b->r, &b->truths[w]);
+    uint32_t has[WALLS_MIXED] = {0}, mixed = 0;
+    for (uint32_t k = 0; k < b->q->strategy_count; ++k)
+        if (b->strategies[k].walls == WALLS_MIXED) mixed++;
+        else has[b->strategies[k].walls] = 1;
+    return b->q->truth == BENCH_TRUTH ? has[WALLS_BOTH_SIDES] + has[WALLS_FRONT_ONLY] + mixed : 0;
+}
+
+static result find_truth(run *b, uint32_t k)
+{
+    const strategy *s = &b->strategies[k];
+    truth *t = truth_of(b, k);
+    const truth_request request = {b->q->scene, b->q->width_px, b->q->height_px, s->walls};
+    result done = truth_open(&request, b->q->services->memory, b->r, t);
     for (uint32_t v = 0; v < b->q->path->count && done == RESULT_OK; ++v) {
         progress_tell(&b->bar, "truth");
         motion_show(&b->motion, v, b->g);
-        done = truth_add_view(&b->truths[w], b->g, &b->q->path->cameras[v], b->r);
+        done = strategy_judge(s, v, b->r, t);
+        if (done == RESULT_OK) done = truth_add_view(t, b->g, &b->q->path->cameras[v], b->r);
     }
+    return done;
+}
+
+static result find_truths(run *b)
+{
+    result done = RESULT_OK;
+    for (uint32_t k = 0; k < b->q->strategy_count && done == RESULT_OK; ++k)
+        if (!truth_of(b, k)->scene) done = find_truth(b, k);
     return done;
 }
 
@@ -132,8 +153,7 @@ static void close_row(run *b, bench_row *row, const strategy *s)
             row->worst_view = v;
         }
     }
-    row->promises = s->promises;
-    row->front_walls_only = s->walls == WALLS_FRONT_ONLY;
+    row->front_walls_only = s->walls != WALLS_BOTH_SIDES;
     row->build_ms = s->build_ms;
     row->index_bytes = s->index_bytes;
     row->indices_built = s->indices_built;
@@ -171,21 +191,33 @@ static void close_times(run *b, bench_row *row, const strategy *s)
 
 // ---- Passes ----
 
-// Draws D alone, in the truth's order: the picture must be the truth's, or more was drawn than was said.
-static result compare_alone(run *b, uint32_t k, uint32_t view)
+// A wrong layout shows after a swap first, so some first views of a turn are compared too: one of so many turns, another
+// place among them each time, lest it be the same set always.
+enum { TURNS_COMPARED_MOST = 8 };
+
+static int is_compared(const run *b, uint32_t k, uint32_t view)
 {
-    const camera *c = &b->q->path->cameras[view];
-    const size_t pixels = (size_t)b->q->width_px * b->q->height_px;
-    truth *t = &b->truths[b->strategies[k].walls];
-    uint32_t *drawn = b->strategies[k].drawn_bits; // movers stand where the strategy's view had them
-    id_picture alone;
-    if (id_picture_open(b->q->scene, b->q->width_px, b->q->height_px, b->q->services->memory, &alone) != RESULT_OK) return report_no_memory(b->r, NULL);
-    const id_request all = {.camera = c}, only = {.camera = c, .item_bits = drawn};
-    result done = truth_draw(t, b->g, &all, b->r);
-    for (uint32_t w = 0; t->shown_bits && w < b->strategies[k].words; ++w) drawn[w] &= t->shown_bits[w]; // backs that a culler kept in doubt
-    if (done == RESULT_OK) done = renderer_id_picture(b->g, &only, b->r, &alone);
-    if (done == RESULT_OK) b->out->rows[k].picture_differs = memcmp(alone.triangles, t->picture.triangles, pixels * sizeof(uint32_t)) != 0;
-    id_picture_free(&alone, b->q->services->memory);
+    const uint32_t views = b->q->path->count, every = b->q->strategies[k].swap_views;
+    if (view == views / 2) return 1;
+    if (!every || view % every) return 0;
+    const uint32_t turn = view / every, turns = (views - 1) / every + 1, among = (turns - 1) / TURNS_COMPARED_MOST + 1;
+    return turn % among == turn / among % among;
+}
+
+// Against the truth: what is missed, and on some views what was truly drawn.
+static result judge_view(run *b, uint32_t k, uint32_t view, view_misses *sum)
+{
+    strategy *s = &b->strategies[k];
+    const truth *t = truth_of(b, k);
+    const view_misses m = strategy_misses(s, t, view);
+    sum->items += m.items;
+    sum->broken += m.broken;
+    if (m.pixels > s->missed[view]) s->missed[view] = m.pixels;
+    if (!is_compared(b, k, view)) return RESULT_OK;
+    uint64_t pixels = 0;
+    const result done = drawn_compare(s, t, view, b->r, &pixels);
+    b->out->rows[k].picture_differs += pixels;
+    b->out->rows[k].pictures_compared++;
     return done;
 }
 
@@ -197,13 +229,15 @@ static result run_pass(run *b, uint32_t pass, uint32_t k)
     const int has_truth = b->q->truth == BENCH_TRUTH, counts = has_truth ? pass == 0 : pass == PASS_COUNTS;
     strategy *s = &b->strategies[k];
     bench_row *row = &b->out->rows[k];
-    uint64_t missed_items = 0, faults = 0;
+    view_misses missed = {0};
+    uint64_t faults = 0;
     const result fresh = strategy_restart(s, b->r);
     if (fresh != RESULT_OK) return fresh;
     for (uint32_t v = 0; v < b->q->path->count; ++v) {
         strategy_view view;
         progress_tell(&b->bar, row->name);
-        const strategy_request request = {.view = v, .mode = RENDER_SHADED, .marks = has_truth || counts ? MARK_DRAWN : MARK_NOTHING};
+        const strategy_request request = {.view = v, .mode = RENDER_SHADED, .marks = has_truth || counts ? MARK_DRAWN : MARK_NOTHING,
+                                          .records = has_truth && is_compared(b, k, v) ? RECORD_DRAWS : RECORD_NOTHING};
         result done = strategy_run_view(s, &request, b->r, &view);
         if (done != RESULT_OK) return done;
         if (counts) add_counts(row, s, &view);
@@ -214,15 +248,12 @@ static result run_pass(run *b, uint32_t pass, uint32_t k)
             s->gl_ms[at] = view.gl_ms;
         }
         if (!has_truth) continue;
-        const truth *t = &b->truths[s->walls];
-        const view_misses m = strategy_misses(s, t, v);
-        missed_items += m.items;
-        if (m.pixels > s->missed[v]) s->missed[v] = m.pixels;
-        if (pass == 0) add_truth(row, (const truth_view *)t->views.items + v);
-        if (pass == 0 && v == b->q->path->count / 2 && m.pixels == 0) done = compare_alone(b, k, v);
+        if (pass == 0) add_truth(row, (const truth_view *)truth_of(b, k)->views.items + v);
+        done = judge_view(b, k, v, &missed);
         if (done != RESULT_OK) return done;
     }
-    if (missed_items > row->missed_items) row->missed_items = missed_items;
+    if (missed.items > row->missed_items) row->missed_items = missed.items;
+    if (missed.broken > row->broken_items) row->broken_items = missed.broken;
     if (faults > row->faults) row->faults = faults;
     return RESULT_OK;
 }
@@ -257,22 +288,22 @@ static result open_result(const bench_request *q, report *r, bench_result *out)
 
 static result run_all(run *b)
 {
-    result done = motion_open(b->q->scene, b->q->doors, b->q->services->memory, &b->motion) == RESULT_OK ? open_strategies(b) : report_no_memory(b->r, NULL);
+    result done = motion_open(b->q->scene, b->q->doors, b->q->services->memory, &b->motion);
+    done = done == RESULT_OK ? open_strategies(b) : report_no_memory(b->r, NULL);
     if (done == RESULT_OK && needs_renderer(b)) done = open_renderer(b);
     const uint64_t passes = (uint64_t)b->q->repeat + (b->q->truth == BENCH_NO_TRUTH);
-    const uint64_t truths = truth_is_needed(b, WALLS_BOTH_SIDES) + truth_is_needed(b, WALLS_FRONT_ONLY);
-    b->bar = progress_start(b->q->path->count * (truths + passes * b->q->strategy_count));
-    for (walls w = 0; w < WALLS_COUNT && done == RESULT_OK; ++w)
-        if (truth_is_needed(b, w)) done = find_truth(b, w);
+    b->bar = progress_start(b->q->path->count * (truths_needed(b) + passes * b->q->strategy_count));
+    if (done == RESULT_OK && b->q->truth == BENCH_TRUTH) done = find_truths(b);
     if (done == RESULT_OK) done = run_passes(b);
     for (uint32_t k = 0; k < b->q->strategy_count && done == RESULT_OK; ++k) {
         close_row(b, &b->out->rows[k], &b->strategies[k]);
         close_times(b, &b->out->rows[k], &b->strategies[k]);
-        if (b->q->images) done = bench_images(&b->strategies[k], &b->truths[b->strategies[k].walls], &b->out->rows[k], b->r);
+        if (b->q->images) done = bench_images(&b->strategies[k], truth_of(b, k), &b->out->rows[k], b->r);
     }
     progress_end(&b->bar);
     b->out->plugins_opened = loader_libraries_open(b->q->plugins);
-    if (done == RESULT_OK && b->g && renderer_errors(b->g)) done = report_error(b->r, NULL, 0, "%u OpenGL errors; the figures are not to be trusted", renderer_errors(b->g));
+    if (done == RESULT_OK && b->g && renderer_errors(b->g))
+        done = report_error(b->r, NULL, 0, "%u OpenGL errors; the figures are not to be trusted", renderer_errors(b->g));
     return done;
 }
 
@@ -284,13 +315,16 @@ result bench_run(const bench_request *q, report *r, bench_result *out)
     const size_t scratch = (size_t)q->path->count + q->repeat;
     run b = {.q = q, .r = r, .out = out};
     b.strategies = memory_alloc_zeroed(memory, q->strategy_count, sizeof *b.strategies);
+    b.mixed = memory_alloc_zeroed(memory, q->strategy_count, sizeof *b.mixed);
     b.scratch = memory_alloc(memory, scratch, sizeof *b.scratch);
-    done = b.strategies && b.scratch ? run_all(&b) : report_no_memory(r, NULL);
+    done = b.strategies && b.mixed && b.scratch ? run_all(&b) : report_no_memory(r, NULL);
     for (uint32_t k = 0; b.strategies && k < q->strategy_count; ++k) strategy_close(&b.strategies[k]);
-    for (walls w = 0; w < WALLS_COUNT; ++w) truth_close(&b.truths[w]);
+    for (uint32_t k = 0; b.mixed && k < q->strategy_count; ++k) truth_close(&b.mixed[k]);
+    for (walls w = 0; w < WALLS_MIXED; ++w) truth_close(&b.truths[w]);
     motion_close(&b.motion);
     renderer_close(b.g);
     memory_free(memory, b.strategies, q->strategy_count, sizeof *b.strategies);
+    memory_free(memory, b.mixed, q->strategy_count, sizeof *b.mixed);
     memory_free(memory, b.scratch, scratch, sizeof *b.scratch);
     if (done != RESULT_OK) bench_result_free(out);
     return done;
@@ -304,6 +338,5 @@ void bench_result_free(bench_result *b)
 
 uint32_t bench_check_failed(const bench_row *row)
 {
-    if (row->picture_differs) return 1;
-    return row->promises & CULL_SAMPLED && (row->missed_pixels || row->missed_items);
+    return row->picture_differs || row->broken_items;
 }

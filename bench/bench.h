@@ -36,7 +36,6 @@ typedef struct bench_request {
 // One strategy's counters: as the JSON names them. Means are per view, sums over the path.
 typedef struct bench_row {
     const char *name;
-    cull_promises promises;
     double cull_ns, cull_ns_mean, cull_ns_p95, cull_ns_p99, gl_ms, total_ms; // over views of each view's median
     double polygons_drawn, polygons_visible, polygons_items, triangles_drawn, items_drawn, items_visible, runs, floor;
     double movers_drawn, movers_visible, queries, steps, draw_calls, state_changes;
@@ -49,7 +48,10 @@ typedef struct bench_row {
     uint64_t portal_merges, limits_hit, stalls, faults, index_bytes;
     uint32_t indices_built;    // zones whose chain was built
     uint32_t front_walls_only; // judged by walls that face the eye only: excess does not compare with rows that are not
-    uint32_t worst_view, picture_differs; // picture_differs: drawing D alone gave another picture than the truth
+    uint64_t broken_items;     // of missed_items: those that a chain of a zone listing them had promised
+    uint64_t picture_differs;  // pixels, over all views looked at, where what was drawn is not what D shows: see drawn.h
+    uint32_t pictures_compared; // views looked at
+    uint32_t worst_view;
 } bench_row;
 
 typedef struct bench_result {
@@ -63,7 +65,7 @@ typedef struct bench_result {
 // [main] Reports progress on a terminal. Free with bench_result_free.
 result bench_run(const bench_request *q, report *r, bench_result *out);
 void bench_result_free(bench_result *b);
-// 1 when a strategy that promises it missed an item or a pixel, or drew what it did not say.
+// 1 when a chain missed an item although it promises not to, or a strategy drew what it did not say.
 uint32_t bench_check_failed(const bench_row *row);
 
 typedef struct bench_labels { const char *scene, *path; } bench_labels; // for names and context

@@ -76,6 +76,20 @@ static result demo_write(uint64_t seed, const char *path, const allocator *memor
     return done_too;
 }
 
+// JSON is UTF-8, so what it cannot name is refused: bytes that are no characters.
+static int is_utf8(const char *text)
+{
+    for (const unsigned char *c = (const unsigned char *)text; *c;) {
+        const unsigned head = *c++;
+        const int more = head < 0x80 ? 0 : head >= 0xc2 && head < 0xe0 ? 1 : head >= 0xe0 && head < 0xf0 ? 2 : head >= 0xf0 && head < 0xf5 ? 3 : -1;
+        if (more < 0) return 0;
+        if ((head == 0xe0 && *c < 0xa0) || (head == 0xed && *c > 0x9f) || (head == 0xf0 && *c < 0x90) || (head == 0xf4 && *c > 0x8f)) return 0;
+        for (int i = 0; i < more; ++i, ++c)
+            if ((*c & 0xc0) != 0x80) return 0;
+    }
+    return 1;
+}
+
 typedef struct wish { const scene_kind *kind; uint64_t size, seed; const char *path; } wish;
 
 static result zoned_make(const wish *q, const allocator *memory, report *r)
@@ -83,6 +97,7 @@ static result zoned_make(const wish *q, const allocator *memory, report *r)
     char obj[PATH_BYTES];
     const result named = name_beside(q->path, ".json", ".obj", obj, r);
     if (named != RESULT_OK) return named;
+    if (!is_utf8(q->path)) return report_error(r, q->path, 0, "a .json names its .obj, and this name is not UTF-8; choose another");
     const zoned_request z = {q->kind->name, q->kind->zoned, q->size, q->seed, q->path, obj};
     return zoned_write(&z, memory, r);
 }

@@ -34,16 +34,26 @@ void json_item(json_writer *j)
     j->is_first = 0;
 }
 
+// As JSON has it: a file's name may hold any byte but '/' and 0.
+static void add_letter(text_file *out, char c)
+{
+    static const char digits[] = "0123456789abcdef";
+    const unsigned char code = (unsigned char)c;
+    const char letter[2] = {c, 0}, escaped[7] = {'\\', 'u', '0', '0', digits[code >> 4], digits[code & 15], 0};
+    if (code < 0x20) {
+        text_add(out, escaped);
+        return;
+    }
+    if (c == '"' || c == '\\') text_add(out, "\\");
+    text_add(out, letter);
+}
+
 void json_mesh(json_writer *j, const char *file)
 {
     json_list(j, "meshes");
     json_item(j);
     text_add(j->out, "{\"file\": \"");
-    for (const char *c = file; *c; ++c) {
-        const char letter[2] = {*c, 0};
-        if (*c == '"' || *c == '\\') text_add(j->out, "\\");
-        text_add(j->out, letter);
-    }
+    for (const char *c = file; *c; ++c) add_letter(j->out, *c);
     text_add(j->out, "\"}");
     json_list_end(j);
 }

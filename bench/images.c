@@ -1,43 +1,64 @@
 // Pictures: see images.h.
 // SPDX-License-Identifier: MIT
 #include "images.h"
+#include "drawn.h"
 
 #include <ctype.h>
 #include <stdio.h>
 
 enum { PATH_BYTES = 4096, NAME_BYTES = 96 };
 
-static int is_missed(const strategy *s, const truth *t, uint32_t triangle)
+static int is_in_set(const strategy *s, const truth *t, uint32_t triangle)
 {
-    if (triangle == 0 || triangle > t->triangle_count) return 0;
+    if (triangle > t->triangle_count) return 1;
     const uint32_t item = t->polygon_item[t->triangle_polygon[triangle - 1]];
-    return !(s->drawn_bits[item / 32] >> (item % 32) & 1);
+    return s->drawn_bits[item / 32] >> (item % 32) & 1;
+}
+
+// Something owns the pixel, and it is not in D, or what was drawn lies behind it: cut away, or drawn otherwise than said.
+static void find_missed(const strategy *s, const truth *t, const float *true_depths, drawn_picture *drawn)
+{
+    for (size_t i = 0; i < drawn->pixels; ++i) {
+        const uint32_t owner = t->picture.triangles[i];
+        drawn->owners[i] = owner && (!is_in_set(s, t, owner) || drawn->depths[i] < true_depths[i]);
+    }
 }
 
 static result mark_missed(strategy *s, truth *t, uint32_t view, report *r, uint8_t *rgba, uint64_t *out_missed)
 {
     const uint32_t width = s->q->width_px, height = s->q->height_px;
     const id_request all = {.camera = &s->q->path->cameras[view]};
-    const result done = truth_draw(t, s->g, &all, r);
+    drawn_picture drawn;
+    result done = drawn_picture_open(s, r, &drawn);
     if (done != RESULT_OK) return done;
-    for (uint32_t y = 0; y < height; ++y)
+    float *true_depths = memory_alloc(s->q->services->memory, drawn.pixels, sizeof *true_depths);
+    done = true_depths ? drawn_again(s, view, r, &drawn) : report_no_memory(r, NULL);
+    if (done == RESULT_OK) done = strategy_judge(s, view, r, t);
+    if (done == RESULT_OK) done = truth_draw(t, s->g, &all, r);
+    if (done == RESULT_OK) done = renderer_read_ids(s->g, NULL, true_depths, r);
+    if (done == RESULT_OK) find_missed(s, t, true_depths, &drawn);
+    memory_free(s->q->services->memory, true_depths, drawn.pixels, sizeof *true_depths);
+    for (uint32_t y = 0; y < height && done == RESULT_OK; ++y)
         for (uint32_t x = 0; x < width; ++x) {
             uint8_t *pixel = rgba + ((size_t)(height - 1 - y) * width + x) * 4;
-            if (is_missed(s, t, t->picture.triangles[(size_t)y * width + x])) {
+            if (drawn.owners[(size_t)y * width + x]) {
                 pixel[0] = pixel[2] = 255;
                 pixel[1] = 0;
                 ++*out_missed;
             } else
                 for (int k = 0; k < 3; ++k) pixel[k] = (uint8_t)(pixel[k] / 2 + 40);
         }
-    return RESULT_OK;
+    drawn_picture_free(s, &drawn);
+    return done;
 }
 
 result picture_of(strategy *s, truth *t, const picture_request *q, report *r, uint8_t *rgba, uint64_t *out_missed)
 {
     strategy_view view;
     *out_missed = 0;
-    const strategy_request request = {q->view, q->kind == PICTURE_ERROR ? RENDER_SHADED : q->mode, MARK_DRAWN, q->scissor};
+    const int is_error = q->kind == PICTURE_ERROR;
+    const strategy_request request = {.view = q->view, .mode = is_error ? RENDER_SHADED : q->mode, .marks = MARK_DRAWN, .scissor = q->scissor,
+                                      .records = is_error ? RECORD_DRAWS : RECORD_NOTHING};
     result done = strategy_restart(s, r);
     if (done == RESULT_OK) done = strategy_run_view(s, &request, r, &view);
     if (done == RESULT_OK) done = renderer_read(s->g, rgba, r);

@@ -49,17 +49,18 @@ static json_t *context_of(const bench_result *b, const bench_request *q, const b
     gethostname(host, sizeof host - 1);
     cpu_model(model, sizeof model);
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)q->scene->hash);
-    return json_pack("{s:s, s:o, s:i, s:o, s:o, s:s, s:s, s:s, s:o, s:o, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:o, s:i}", "date", date, "host_name", json_text(host),
-                     "num_cpus", (int)sysconf(_SC_NPROCESSORS_ONLN), "cpu_model", json_text(model), "load_avg", load_average(), "library_version", PORTCULLIS_VERSION,
-                     "library_build_type",
+    return json_pack("{s:s, s:o, s:i, s:o, s:o, s:s, s:s, s:s, s:o, s:o, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:o, s:i}", "date", date, "host_name",
+                     json_text(host), "num_cpus", (int)sysconf(_SC_NPROCESSORS_ONLN), "cpu_model", json_text(model), "load_avg", load_average(),
+                     "library_version", PORTCULLIS_VERSION, "library_build_type",
 #ifdef NDEBUG
                      "release",
 #else
                      "debug",
 #endif
-                     "commit", PORTCULLIS_COMMIT, "gl_renderer", json_text(b->gl_used ? b->gl_name : "none"), "scene", json_text(labels->scene), "scene_hash", hash,
-                     "width_px", (int)q->width_px, "height_px", (int)q->height_px, "repeat", (int)q->repeat, "query_latency", (int)q->query_latency,
-                     "zones", (int)b->zones, "portals", (int)b->portals, "path", json_text(labels->path), "json_schema_version", 1);
+                     "commit", PORTCULLIS_COMMIT, "gl_renderer", json_text(b->gl_used ? b->gl_name : "none"), "scene", json_text(labels->scene),
+                     "scene_hash", hash, "width_px", (int)q->width_px, "height_px", (int)q->height_px, "repeat", (int)q->repeat, "query_latency",
+                     (int)q->query_latency, "zones", (int)b->zones, "portals", (int)b->portals, "path", json_text(labels->path),
+                     "json_schema_version", 1);
 }
 
 typedef struct counter { const char *name; double value; } counter;
@@ -88,8 +89,9 @@ static json_t *head_of(const bench_result *b, const bench_request *q, const benc
 {
     char name[8192];
     snprintf(name, sizeof name, "%s/%s/%s", labels->scene, labels->path, row->name);
-    return json_pack("{s:o, s:o, s:s, s:i, s:i, s:f, s:f, s:s}", "name", json_text(name), "run_name", json_text(name), "run_type", "iteration", "repetitions",
-                     (int)q->repeat, "iterations", (int)(q->repeat * b->views), "real_time", row->cull_ns, "cpu_time", row->cull_ns, "time_unit", "ns");
+    return json_pack("{s:o, s:o, s:s, s:i, s:i, s:f, s:f, s:s}", "name", json_text(name), "run_name", json_text(name), "run_type", "iteration",
+                     "repetitions", (int)q->repeat, "iterations", (int)(q->repeat * b->views), "real_time", row->cull_ns, "cpu_time", row->cull_ns,
+                     "time_unit", "ns");
 }
 
 static json_t *entry_of(const bench_result *b, const bench_request *q, const bench_labels *labels, const bench_row *row)
@@ -104,12 +106,16 @@ static json_t *entry_of(const bench_result *b, const bench_request *q, const ben
         {"movers_drawn", row->movers_drawn}, {"build_ms", row->build_ms}, {"index_bytes", (double)row->index_bytes}, {"queries", row->queries},
         {"steps", row->steps}, {"zones", row->zones}, {"volumes", row->volumes}, {"crossings", row->crossings}, {"swaps", (double)row->swaps},
         {"faults", (double)row->faults}, {"plugins_opened", b->plugins_opened}, {"indices_built", row->indices_built}, {"gl_used", b->gl_used}};
-    const counter of_gl[] = {{"gl_ms", row->gl_ms}, {"total_ms", row->total_ms}, {"draw_calls", row->draw_calls}, {"state_changes", row->state_changes}};
+    const counter of_gl[] = {
+        {"gl_ms", row->gl_ms}, {"total_ms", row->total_ms}, {"draw_calls", row->draw_calls}, {"state_changes", row->state_changes}};
     const counter of_truth[] = {
-        {"polygons_visible", row->polygons_visible}, {"polygons_items", row->polygons_items}, {"items_visible", row->items_visible}, {"floor", row->floor},
+        {"polygons_visible", row->polygons_visible}, {"polygons_items", row->polygons_items}, {"items_visible", row->items_visible},
+        {"floor", row->floor},
         {"excess", ratio_by(row->excess, row->polygons_visible)}, {"excess_items", ratio_by(row->excess_items, row->polygons_items)},
         {"missed_pixels", (double)row->missed_pixels},
-        {"missed_items", (double)row->missed_items}, {"missed_pixels_max", (double)row->missed_pixels_max}, {"movers_visible", row->movers_visible}};
+        {"missed_items", (double)row->missed_items}, {"broken_items", (double)row->broken_items}, {"picture_differs", (double)row->picture_differs},
+        {"pictures_compared", row->pictures_compared}, {"missed_pixels_max", (double)row->missed_pixels_max},
+        {"movers_visible", row->movers_visible}};
     const counter of_movers[] = {{"mover_update_ns", ratio_by(row->mover_update_ns, row->mover_update_ns)}};
     const counter of_swaps[] = {{"swap_ms", ratio_by(row->swap_ms, (double)row->swaps)}};
     const counter last[] = {{"front_walls_only", row->front_walls_only}};

@@ -14,12 +14,43 @@ static void unite(float r[4], const float other[4])
     }
 }
 
+static int is_shared(const scene *s, uint32_t listing)
+{
+    return s->listings[s->zone_items[listing]] > 1;
+}
+
+static uint32_t count_shared(scissor *x)
+{
+    const scene *s = x->scene;
+    uint32_t count = 0;
+    for (uint32_t z = 0; z < s->zone_count; ++z) {
+        x->first_shared[z] = count;
+        for (uint32_t i = s->zones[z].first_item; i < s->zones[z].first_item + s->zones[z].item_count; ++i) count += (uint32_t)is_shared(s, i);
+    }
+    x->first_shared[s->zone_count] = count;
+    return count;
+}
+
+static void list_shared(scissor *x)
+{
+    const scene *s = x->scene;
+    uint32_t *at = x->shared;
+    for (uint32_t z = 0; z < s->zone_count; ++z)
+        for (uint32_t i = s->zones[z].first_item; i < s->zones[z].first_item + s->zones[z].item_count; ++i)
+            if (is_shared(s, i)) *at++ = s->zone_items[i];
+}
+
 result scissor_open(const scene *s, const allocator *memory, scissor *out)
 {
     *out = (scissor){.scene = s, .memory = memory};
     out->of_zone = memory_alloc(memory, s->zone_count, sizeof *out->of_zone);
     out->of_item = memory_alloc(memory, s->item_count, sizeof *out->of_item);
-    if (out->of_zone && out->of_item) return RESULT_OK;
+    out->first_shared = memory_alloc(memory, (size_t)s->zone_count + 1, sizeof *out->first_shared);
+    if (out->first_shared) out->shared = memory_alloc(memory, count_shared(out), sizeof *out->shared);
+    if (out->of_zone && out->of_item && out->shared) {
+        list_shared(out);
+        return RESULT_OK;
+    }
     scissor_close(out);
     return RESULT_NO_MEMORY;
 }
@@ -29,6 +60,8 @@ void scissor_close(scissor *s)
     if (!s->scene) return;
     memory_free(s->memory, s->of_zone, s->scene->zone_count, sizeof *s->of_zone);
     memory_free(s->memory, s->of_item, s->scene->item_count, sizeof *s->of_item);
+    if (s->shared) memory_free(s->memory, s->shared, s->first_shared[s->scene->zone_count], sizeof *s->shared);
+    memory_free(s->memory, s->first_shared, (size_t)s->scene->zone_count + 1, sizeof *s->first_shared);
     *s = (scissor){0};
 }
 
@@ -37,25 +70,19 @@ static void start_zone(scissor *s, const flow_result *f, const flow_zone *z)
     float *own = s->of_zone[z->zone];
     memcpy(own, EMPTY, sizeof EMPTY);
     for (uint32_t i = z->first; i < z->first + z->count; ++i) unite(own, f->volumes[f->by_zone[i]].rectangle);
-    const scene_zone *zone = &s->scene->zones[z->zone];
-    for (uint32_t i = zone->first_item; i < zone->first_item + zone->item_count; ++i)
-        memcpy(s->of_item[s->scene->zone_items[i]], EMPTY, sizeof EMPTY);
+    for (uint32_t i = s->first_shared[z->zone]; i < s->first_shared[z->zone + 1]; ++i) memcpy(s->of_item[s->shared[i]], EMPTY, sizeof EMPTY);
 }
 
 // Into the rectangles of the zone's shared items.
 static void give(scissor *s, uint32_t zone)
 {
-    const scene_zone *z = &s->scene->zones[zone];
-    for (uint32_t i = z->first_item; i < z->first_item + z->item_count; ++i)
-        if (s->scene->listings[s->scene->zone_items[i]] > 1) unite(s->of_item[s->scene->zone_items[i]], s->of_zone[zone]);
+    for (uint32_t i = s->first_shared[zone]; i < s->first_shared[zone + 1]; ++i) unite(s->of_item[s->shared[i]], s->of_zone[zone]);
 }
 
 static void take(const scissor *s, uint32_t zone, float rectangle[4])
 {
-    const scene_zone *z = &s->scene->zones[zone];
     memcpy(rectangle, s->of_zone[zone], sizeof EMPTY);
-    for (uint32_t i = z->first_item; i < z->first_item + z->item_count; ++i)
-        if (s->scene->listings[s->scene->zone_items[i]] > 1) unite(rectangle, s->of_item[s->scene->zone_items[i]]);
+    for (uint32_t i = s->first_shared[zone]; i < s->first_shared[zone + 1]; ++i) unite(rectangle, s->of_item[s->shared[i]]);
 }
 
 void scissor_tell(scissor *s, const flow_result *f, renderer *g)

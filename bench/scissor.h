@@ -16,6 +16,8 @@ typedef struct scissor {
     const allocator *memory;
     scissor_sharing sharing; // may be set at any time
     float (*of_zone)[4], (*of_item)[4]; // zone_count, item_count; least x, least y, greatest x, greatest y
+    uint32_t *shared;                   // items that several zones list, zone after zone
+    uint32_t *first_shared;             // of each zone, in shared; one more at the end
 } scissor;
 
 result scissor_open(const scene *s, const allocator *memory, scissor *out); // RESULT_NO_MEMORY leaves nothing

@@ -27,7 +27,7 @@ static int open_arrays(strategy *s)
     s->cull_ns = memory_alloc_zeroed(memory, samples, sizeof(double));
     s->gl_ms = memory_alloc_zeroed(memory, samples, sizeof(double));
     s->missed = memory_alloc_zeroed(memory, s->q->path->count, sizeof(uint64_t));
-    if (!s->drawn_bits || !s->picture_bits || !s->cull_ns || !s->gl_ms || !s->missed) return 0;
+    if (!s->drawn_bits || !s->picture_bits || !s->cull_ns || !s->gl_ms || !s->missed || !blame_open(s)) return 0;
     if (s->q->ids == BENCH_IDS) {
         s->ids = memory_alloc_zeroed(memory, (size_t)sc->item_count + RUNS_OVERWRITE, sizeof(uint32_t));
         if (!s->ids) return 0;
@@ -44,6 +44,8 @@ static void set_doors(strategy *s)
 result strategy_open(const bench_request *q, const bench_strategy_request *chains, renderer *g, report *r, strategy *out)
 {
     *out = (strategy){.q = q, .chains = chains, .kernel = runs_kernel_best()};
+    out->draws = buffer_make(q->services->memory, sizeof(strategy_draw));
+    out->draw_runs = buffer_make(q->services->memory, sizeof(cull_run));
     result done = chains_open(out, r);
     if (done == RESULT_OK && !open_arrays(out)) done = report_no_memory(r, q->scene->path);
     if (done == RESULT_OK) {
@@ -90,6 +92,9 @@ void strategy_close(strategy *s)
     chains_close(s);
     motion_close(&s->motion);
     scissor_close(&s->scissor);
+    blame_close(s);
+    buffer_free(&s->draws);
+    buffer_free(&s->draw_runs);
     memory_free(memory, s->drawn_bits, s->words, sizeof(uint32_t));
     memory_free(memory, s->picture_bits, s->words, sizeof(uint32_t));
     memory_free(memory, s->ids, (size_t)s->q->scene->item_count + RUNS_OVERWRITE, sizeof(uint32_t));
@@ -122,7 +127,8 @@ frame_input strategy_input(strategy *s, uint32_t view)
 {
     const bench_request *q = s->q;
     return (frame_input){.camera = &q->path->cameras[view],
-                         .frame = {.width_px = q->width_px, .height_px = q->height_px, .frame = view + 1, .flags = view_flags(q->path, view), .purpose = CULL_VIEW_MAIN},
+                         .frame = {.width_px = q->width_px, .height_px = q->height_px, .frame = view + 1, .flags = view_flags(q->path, view),
+                                   .purpose = CULL_VIEW_MAIN},
                          .driver = driver_of(s)};
 }
 
@@ -141,15 +147,18 @@ static void move_movers(strategy *s, uint32_t view)
 static result prepare_view(strategy *s, const strategy_request *w, report *r)
 {
     result done = chains_turn(s, w->view, r);
-    if (done == RESULT_OK && w->scissor == SCISSOR_ZONES && !s->scissor.scene && scissor_open(s->q->scene, s->q->services->memory, &s->scissor) != RESULT_OK)
+    const int opens_scissor = done == RESULT_OK && w->scissor == SCISSOR_ZONES && !s->scissor.scene;
+    if (opens_scissor && scissor_open(s->q->scene, s->q->services->memory, &s->scissor) != RESULT_OK)
         done = report_no_memory(r, s->q->scene->path);
     if (done != RESULT_OK) return done;
     move_movers(s, w->view);
     if (w->marks == MARK_DRAWN) memset(s->drawn_bits, 0, s->words * sizeof(uint32_t));
     if (w->marks == MARK_DRAWN && s->has_pictures) memset(s->picture_bits, 0, s->words * sizeof(uint32_t));
     s->marks = w->marks;
+    s->records = w->records;
+    s->draws.count = s->draw_runs.count = 0;
     s->cut = w->scissor;
-    s->cut_is_told = s->repeats = s->picture_faults = 0;
+    s->cut_is_told = s->repeats = s->picture_faults = s->id_faults = s->record_failed = 0;
     return RESULT_OK;
 }
 
@@ -161,7 +170,8 @@ result strategy_run_view(strategy *s, const strategy_request *w, report *r, stra
     *out = (strategy_view){0};
     double start = 0;
     if (s->g) {
-        const frame_request frame = {.camera = input.camera, .width_px = s->q->width_px, .height_px = s->q->height_px, .mode = w->mode, .scissor = w->scissor};
+        const frame_request frame = {.camera = input.camera, .width_px = s->q->width_px, .height_px = s->q->height_px, .mode = w->mode,
+                                     .scissor = w->scissor};
         start = process_cpu_ns();
         const result begun = renderer_begin(s->g, &frame, r);
         if (begun != RESULT_OK) return begun;
@@ -179,6 +189,6 @@ result strategy_run_view(strategy *s, const strategy_request *w, report *r, stra
         if (ns > 0) out->stats.cull_ns += ns;
     }
     if (w->marks == MARK_DRAWN) set_mark(s, &out->set);
-    out->faults = out->stats.faults + s->repeats + s->picture_faults;
-    return RESULT_OK;
+    out->faults = out->stats.faults + s->repeats + s->picture_faults + s->id_faults;
+    return s->record_failed ? report_no_memory(r, s->q->scene->path) : RESULT_OK;
 }

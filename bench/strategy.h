@@ -13,7 +13,12 @@ typedef struct view_counts { // of one view: the set D
     uint64_t polygons, triangles, items, runs, mover_polygons;
 } view_counts;
 
-typedef struct view_misses { uint64_t pixels, items; } view_misses;
+typedef struct view_misses { uint64_t pixels, items, broken; } view_misses; // broken: items that a chain had promised
+
+typedef struct strategy_draw { // as the driver was told
+    uint32_t zone;         // SCENE_NONE: movers, each as a run
+    uint32_t first, count; // in strategy.draw_runs
+} strategy_draw;
 
 typedef struct strategy_zone {
     uint32_t first, item_count; // in strategy.order
@@ -42,10 +47,13 @@ typedef struct strategy {
     uint32_t *picture_bits; // what stands in pictures of the current view, by global id
     uint32_t *ids;          // for BENCH_IDS
     const runs_kernel *kernel;
-    cull_promises promises; // those that every chain so far gives
     walls walls;            // which truth judges it
-    uint32_t uses_renderer, may_step, has_pictures, turn; // may_step: some chain takes several steps; turn: how often chains have gone on to the next set
-    uint32_t marks, repeats, picture_faults; // of the current view; picture_faults: pictures said to hold what they don't
+    uint32_t *blame;        // scratch of strategy_misses
+    buffer draws, draw_runs; // strategy_draw, cull_run: of the current view, where wanted
+    uint32_t uses_renderer, may_step, has_pictures; // may_step: some chain takes several steps
+    uint32_t turn;                                  // how often chains have gone on to the next set
+    uint32_t marks, records, repeats, picture_faults; // of the current view; picture_faults: pictures said to hold what they don't
+    uint32_t id_faults, record_failed;                // id_faults: more ids than items
     render_scissor cut;
     uint32_t cut_is_told;
     double *cull_ns, *gl_ms; // repeat * views samples
@@ -68,11 +76,13 @@ result strategy_restart(strategy *s, report *r);
 // in drawn_bits, unless it is not wanted: marking reads as much memory as culling, and would push the culler's out of the
 // caches before the next view. Allocates nothing but in swaps.
 typedef enum strategy_marks { MARK_DRAWN, MARK_NOTHING } strategy_marks;
+typedef enum strategy_records { RECORD_NOTHING, RECORD_DRAWS } strategy_records; // DRAWS: for drawn.h; takes memory
 typedef struct strategy_request {
     uint32_t view;
     render_mode mode;
     strategy_marks marks;
     render_scissor scissor;
+    strategy_records records;
 } strategy_request;
 typedef struct strategy_view {
     frame_stats stats;
@@ -87,6 +97,9 @@ frame_input strategy_input(strategy *s, uint32_t view);
 uint32_t strategy_tests(const strategy *s);
 
 view_counts strategy_count(const strategy *s, const visible_set *set);
+// Right after that view was run, against the truth's view of that number.
 view_misses strategy_misses(const strategy *s, const truth *t, uint32_t view);
+// Which walls are judged by their fronts in that view, to a truth of WALLS_MIXED; before anything is drawn with it.
+result strategy_judge(const strategy *s, uint32_t view, report *r, truth *t);
 
 #endif

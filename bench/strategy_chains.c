@@ -1,4 +1,4 @@
-// Strategies: the chains of the world's zones, in their turn, with what depends on them: orders, pictures, promises.
+// Strategies: the chains of the world's zones, in their turn, with what depends on them: orders, pictures, walls.
 // SPDX-License-Identifier: MIT
 #include "strategy_parts.h"
 
@@ -78,7 +78,6 @@ static result take_chain(strategy *s, uint32_t zone, report *r)
     const chain *c = world_chain(s->world, zone);
     world_order(s->world, zone, s->order + z->first);
     z->is_identity = !c->order && !world_zone(s->world, zone)->items;
-    s->promises &= c->promises;
     s->uses_renderer |= c->uses_renderer;
     for (uint32_t i = 0; i < c->stage_count; ++i) s->may_step |= c->stages[i].built.max_steps > 1;
     return take_slots(s, z, slots_of(c), r);
@@ -105,15 +104,43 @@ static int open_zones(strategy *s)
 static result find_walls(strategy *s, report *r)
 {
     const uint32_t turns = turns_of(s->chains);
-    s->walls = WALLS_BOTH_SIDES;
+    uint32_t chains = 0, of_fronts = 0;
     for (uint32_t z = 0; z < s->q->scene->zone_count; ++z)
         for (uint32_t t = 0; t < turns && world_chain(s->world, z); ++t) {
             const chain_spec *spec = spec_of(s->chains, z, t);
             const cull_plugin *plugin;
             const result done = loader_find(s->q->plugins, spec->stages[0].id, r, &plugin);
             if (done != RESULT_OK) return done;
-            if (walls_of_chain(plugin->descriptor, spec) == WALLS_FRONT_ONLY) s->walls = WALLS_FRONT_ONLY;
+            of_fronts += walls_of_chain(plugin->descriptor, spec) == WALLS_FRONT_ONLY;
+            chains++;
         }
+    s->walls = of_fronts == 0 ? WALLS_BOTH_SIDES : of_fronts == chains ? WALLS_FRONT_ONLY : WALLS_MIXED;
+    return RESULT_OK;
+}
+
+static void judge_both_sides(const scene *s, uint32_t zone, truth *t)
+{
+    const scene_zone *z = &s->zones[zone];
+    for (uint32_t i = z->first_item; i < z->first_item + z->item_count; ++i)
+        t->front_bits[s->zone_items[i] / 32] &= ~(1u << (s->zone_items[i] % 32));
+}
+
+result strategy_judge(const strategy *s, uint32_t view, report *r, truth *t)
+{
+    const scene *sc = s->q->scene;
+    const uint32_t turn = turn_of(s, view);
+    if (!t->front_bits || t->front_turn == turn + 1) return RESULT_OK;
+    t->front_turn = 0;
+    memset(t->front_bits, 0xff, s->words * sizeof *t->front_bits);
+    for (uint32_t z = 0; z < sc->zone_count; ++z) {
+        if (!world_chain(s->world, z)) continue;
+        const chain_spec *spec = spec_of(s->chains, z, turn);
+        const cull_plugin *plugin;
+        const result done = loader_find(s->q->plugins, spec->stages[0].id, r, &plugin);
+        if (done != RESULT_OK) return done;
+        if (walls_of_chain(plugin->descriptor, spec) == WALLS_BOTH_SIDES) judge_both_sides(sc, z, t);
+    }
+    t->front_turn = turn + 1;
     return RESULT_OK;
 }
 
@@ -135,7 +162,6 @@ result chains_open(strategy *s, report *r)
     result done = open_world(s, r);
     if (done == RESULT_OK && !open_zones(s)) done = report_no_memory(r, s->q->scene->path);
     if (done == RESULT_OK) done = find_walls(s, r);
-    s->promises = ~(cull_promises)0;
     for (uint32_t z = 0; z < s->q->scene->zone_count && done == RESULT_OK; ++z) {
         const chain *c = world_chain(s->world, z);
         if (!c) continue;

@@ -4,6 +4,13 @@
 
 #include <string.h>
 
+static void record(strategy *s, uint32_t zone, const cull_run *runs, uint32_t count)
+{
+    if (s->records == RECORD_NOTHING || !count) return;
+    const strategy_draw draw = {zone, (uint32_t)s->draw_runs.count, count};
+    s->record_failed |= !buffer_append(&s->draw_runs, runs, count) || !buffer_append(&s->draws, &draw, 1);
+}
+
 static void drive_draw(void *user, uint32_t zone, const cull_run *runs, uint32_t count)
 {
     strategy *s = user;
@@ -13,12 +20,14 @@ static void drive_draw(void *user, uint32_t zone, const cull_run *runs, uint32_t
     }
     s->cut_is_told = 1;
     renderer_draw(s->g, s->layout, zone, runs, count);
+    record(s, zone, runs, count);
 }
 
 static void drive_draw_movers(void *user, const uint32_t *movers, uint32_t count)
 {
     strategy *s = user;
     renderer_draw_movers(s->g, s->layout, movers, count);
+    for (uint32_t i = 0; i < count; ++i) record(s, SCENE_NONE, &(cull_run){movers[i], 1}, 1);
 }
 
 static uint32_t run_end(const strategy_zone *z, cull_run run)
@@ -65,6 +74,7 @@ static void drive_show(void *user, uint32_t zone, const cull_picture *pictures, 
     strategy *s = user;
     for (uint32_t i = 0; i < count; ++i) {
         renderer_show(s->g, s->layout, zone, &pictures[i]);
+        record(s, zone, pictures[i].runs, pictures[i].run_count);
         if (s->marks == MARK_DRAWN) note_picture(s, &s->zones[zone], &pictures[i]);
     }
 }

@@ -16,6 +16,10 @@ result chains_tell_slots(strategy *s, report *r); // to layout and renderer; the
 // ---- strategy_driver.c: the renderer behind the frame ----
 frame_driver driver_of(strategy *s);
 
+// ---- blame.c: whose fault a miss is ----
+int blame_open(strategy *s); // 0: no memory
+void blame_close(strategy *s);
+
 // ---- strategy_set.c: the set D ----
 void set_mark(strategy *s, const visible_set *set); // after a frame that marks
 double set_write_ids(strategy *s, const visible_set *set); // into s->ids; returns the CPU time, ns

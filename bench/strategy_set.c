@@ -1,4 +1,4 @@
-// Strategies: the set D of a view by global id, its counts, what it misses.
+// Strategies: the set D of a view by global id, its counts.
 // SPDX-License-Identifier: MIT
 // Invariant: an item that several zones list stands once in D; one that the host gives twice is a repeat, a fault.
 #define _POSIX_C_SOURCE 200809L
@@ -41,11 +41,24 @@ void set_mark(strategy *s, const visible_set *set)
     for (uint32_t w = 0; s->has_pictures && w < s->words; ++w) s->drawn_bits[w] |= s->picture_bits[w];
 }
 
+// Zones whose ids there is room for: all, unless some stand twice. Outside the time: no culler needs it.
+static uint32_t zones_that_fit(const strategy *s, const visible_set *set)
+{
+    uint64_t total = 0;
+    for (uint32_t i = 0; i < set->zone_count; ++i) {
+        for (uint32_t k = 0; k < set->zones[i].run_count; ++k) total += set->zones[i].runs[k].count;
+        if (total > s->q->scene->item_count) return i;
+    }
+    return set->zone_count;
+}
+
 double set_write_ids(strategy *s, const visible_set *set)
 {
+    const uint32_t zones = zones_that_fit(s, set);
     const double start = thread_cpu_ns();
     uint32_t *ids = s->ids;
-    for (uint32_t i = 0; i < set->zone_count; ++i) {
+    s->id_faults = zones < set->zone_count;
+    for (uint32_t i = 0; i < zones; ++i) {
         const strategy_zone *z = &s->zones[set->zones[i].zone];
         ids += s->kernel->expand(set->zones[i].runs, set->zones[i].run_count, z->is_identity ? NULL : s->order + z->first, ids);
     }
@@ -68,18 +81,4 @@ view_counts strategy_count(const strategy *s, const visible_set *set)
             }
         }
     return c;
-}
-
-view_misses strategy_misses(const strategy *s, const truth *t, uint32_t view)
-{
-    const truth_view *v = (const truth_view *)t->views.items + view;
-    view_misses m = {0};
-    if (!v->count) return m; // of a whole path that sees nothing there is no list
-    const truth_item *items = (const truth_item *)t->items.items + v->first;
-    for (uint32_t i = 0; i < v->count; ++i) {
-        if (s->drawn_bits[items[i].item / 32] >> (items[i].item % 32) & 1) continue;
-        m.items++;
-        m.pixels += items[i].pixels;
-    }
-    return m;
 }

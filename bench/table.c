@@ -75,7 +75,7 @@ static int put_head(buffer *text, const columns *c)
 
 static int put_marks(buffer *text, const bench_row *row)
 {
-    const char *check = bench_check_failed(row) ? "FAILED" : row->faults ? "faults" : "";
+    const char *check = row->picture_differs ? "DRAWN WRONG" : bench_check_failed(row) ? "FAILED" : row->faults ? "faults" : "";
     return put(text, "  %s%s%s\n", check, *check && row->front_walls_only ? " " : "", row->front_walls_only ? "front walls" : "");
 }
 
@@ -85,8 +85,8 @@ static int put_row(buffer *text, const bench_row *row, const columns *c)
     int good = put(text, "%-*s %10s %10s %8s %8s %8s", c->name_width, row->name, short_time(row->cull_ns, t[0]), short_time(row->cull_ns_p95, t[1]),
                    short_count(row->items_drawn, n[0]), short_count(row->polygons_drawn, n[1]), short_count(row->runs, n[2]));
     if (c->has_zones)
-        good = good && put(text, " %8s %8s %9s %7s", short_count(row->zones, n[5]), short_count(row->volumes, n[6]), short_count(row->crossings, n[7]),
-                           short_count((double)row->portal_merges, n[8]));
+        good = good && put(text, " %8s %8s %9s %7s", short_count(row->zones, n[5]), short_count(row->volumes, n[6]),
+                           short_count(row->crossings, n[7]), short_count((double)row->portal_merges, n[8]));
     if (c->has_motion) good = good && put(text, " %9s", short_time(row->mover_update_ns, t[2]));
     if (c->gl_used) good = good && put(text, " %9.2f %9.2f", row->gl_ms, row->total_ms);
     if (c->truth == BENCH_TRUTH)

@@ -30,10 +30,13 @@ result truth_open(const truth_request *q, const allocator *memory, report *r, tr
     out->item_pixels = memory_alloc_zeroed(memory, all_items(s), sizeof(uint32_t));
     out->item_polygons = memory_alloc_zeroed(memory, all_items(s), sizeof(uint32_t));
     out->floor_bits = memory_alloc_zeroed(memory, (all_items(s) + 31) / 32, sizeof(uint32_t));
-    if (q->walls == WALLS_FRONT_ONLY) out->shown_bits = memory_alloc(memory, (all_items(s) + 31) / 32, sizeof(uint32_t));
-    const int failed = (q->walls == WALLS_FRONT_ONLY && !out->shown_bits) || !out->triangle_polygon || !out->polygon_item || !out->polygon_stamp || !out->item_pixels || !out->item_polygons ||
-                       !out->floor_bits || id_picture_open(s, q->width_px, q->height_px, memory, &out->picture) != RESULT_OK;
-    if (failed) {
+    const size_t words = (all_items(s) + 31) / 32;
+    if (q->walls != WALLS_BOTH_SIDES) out->shown_bits = memory_alloc(memory, words, sizeof(uint32_t));
+    if (q->walls == WALLS_MIXED) out->front_bits = memory_alloc(memory, words, sizeof(uint32_t));
+    if (out->front_bits) memset(out->front_bits, 0xff, words * sizeof(uint32_t));
+    const int has_bits = (q->walls == WALLS_BOTH_SIDES || out->shown_bits) && (q->walls != WALLS_MIXED || out->front_bits) && out->floor_bits;
+    const int has_lookups = out->triangle_polygon && out->polygon_item && out->polygon_stamp && out->item_pixels && out->item_polygons;
+    if (!has_bits || !has_lookups || id_picture_open(s, q->width_px, q->height_px, memory, &out->picture) != RESULT_OK) {
         truth_close(out);
         return report_no_memory(r, s->path);
     }
@@ -51,6 +54,7 @@ void truth_close(truth *t)
     memory_free(memory, t->item_pixels, all_items(t->scene), sizeof(uint32_t));
     memory_free(memory, t->item_polygons, all_items(t->scene), sizeof(uint32_t));
     memory_free(memory, t->floor_bits, (all_items(t->scene) + 31) / 32, sizeof(uint32_t));
+    memory_free(memory, t->front_bits, (all_items(t->scene) + 31) / 32, sizeof(uint32_t));
     memory_free(memory, t->shown_bits, (all_items(t->scene) + 31) / 32, sizeof(uint32_t));
     if (t->picture.triangles) id_picture_free(&t->picture, memory);
     buffer_free(&t->items);
@@ -121,6 +125,7 @@ result truth_draw(truth *t, renderer *g, const id_request *q, report *r)
 {
     id_request shown = *q;
     if (t->shown_bits) walls_in_front(t->scene, q->camera, t->shown_bits);
+    for (uint32_t w = 0; t->front_bits && w < (all_items(t->scene) + 31) / 32; ++w) t->shown_bits[w] |= ~t->front_bits[w];
     shown.item_bits = t->shown_bits;
     return renderer_id_picture(g, &shown, r, &t->picture);
 }

@@ -18,7 +18,8 @@ walls walls_of_chain(const cull_descriptor *d, const chain_spec *spec)
 
 static int triangle_faces(const scene *s, uint32_t first_index, const double eye[3])
 {
-    const cull_vec3 a = s->positions[s->indices[first_index]], b = s->positions[s->indices[first_index + 1]], c = s->positions[s->indices[first_index + 2]];
+    const uint32_t *corner = s->indices + first_index;
+    const cull_vec3 a = s->positions[corner[0]], b = s->positions[corner[1]], c = s->positions[corner[2]];
     const double u[3] = {(double)b.x - a.x, (double)b.y - a.y, (double)b.z - a.z};
     const double v[3] = {(double)c.x - a.x, (double)c.y - a.y, (double)c.z - a.z};
     const double w[3] = {eye[0] - a.x, eye[1] - a.y, eye[2] - a.z};

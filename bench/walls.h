@@ -6,8 +6,9 @@
 #include "../host/core/chain.h"
 #include "../host/core/view.h"
 
-// The same on both sides of any comparison: a chain whose select has the option `backface` at 1 is judged by front walls only.
-typedef enum walls { WALLS_BOTH_SIDES, WALLS_FRONT_ONLY, WALLS_COUNT } walls;
+// The same on both sides of any comparison: a chain whose select has the option `backface` at 1 is judged by front walls
+// only. MIXED: some zones have such a chain; a wall is left out where all zones that list it have one.
+typedef enum walls { WALLS_BOTH_SIDES, WALLS_FRONT_ONLY, WALLS_MIXED } walls;
 
 walls walls_of_chain(const cull_descriptor *select, const chain_spec *spec);
 // Sets the bit of every item and mover but of one-sided walls none of whose triangles faces the eye. words: (item_count +

@@ -323,7 +323,8 @@ static inline int cull_normals_sign_tier(const cull_wide_plane *a, const cull_wi
     if (w > error) return 1;
     if (w < -error) return -1;
     *tier = 6 * size < CULL_MOST_64 ? CULL_TIER_64 : 6 * size < CULL_MOST_128 ? CULL_TIER_128 : CULL_TIER_256;
-    return *tier == CULL_TIER_64 ? cull_three_64(n[0], n[1], n[2]) : *tier == CULL_TIER_128 ? cull_three_128(n[0], n[1], n[2]) : cull_three_256(n[0], n[1], n[2]);
+    if (*tier == CULL_TIER_64) return cull_three_64(n[0], n[1], n[2]);
+    return *tier == CULL_TIER_128 ? cull_three_128(n[0], n[1], n[2]) : cull_three_256(n[0], n[1], n[2]);
 }
 
 static inline int cull_normals_sign(const cull_wide_plane *a, const cull_wide_plane *b, const cull_wide_plane *c)
@@ -350,13 +351,22 @@ static inline int cull_order_along(const cull_wide_plane *a, const cull_wide_pla
     return height ? height * cull_normals_sign(a, b, d) : 0;
 }
 
-// The meeting point in doubles, from the exact numerators and w: each coordinate within 2^-50 of its own size (3 + 3
-// roundings, and the division's one). Signs and zeros are exact. false when there is none.
-static inline bool cull_meet_position(const cull_wide_plane *a, const cull_wide_plane *b, const cull_wide_plane *c, double out[3])
+static inline bool cull_meet_position_64(const cull_wide_plane *a, const cull_wide_plane *b, const cull_wide_plane *c, double out[3])
+{
+    const cull_minors_64 s = cull_minors_64_of(a, b);
+    const int64_t *n = c->normal, o = cull_wide_to_int64(c->offset), w = s.xy * n[2] - s.xz * n[1] + s.yz * n[0];
+    if (w == 0) return false;
+    out[0] = (double)(s.y * n[2] - s.yz * o - s.z * n[1]) / (double)w + 0.0;
+    out[1] = (double)(s.xz * o - s.x * n[2] + s.z * n[0]) / (double)w + 0.0;
+    out[2] = (double)(s.x * n[1] - s.xy * o - s.y * n[0]) / (double)w + 0.0;
+    return true;
+}
+
+static inline bool cull_meet_position_256(const cull_wide_plane *a, const cull_wide_plane *b, const cull_wide_plane *c, double out[3])
 {
     const cull_minors_128 s = cull_minors_128_of(a, b);
     const cull_wide n[3] = {cull_wide_from(c->normal[0]), cull_wide_from(c->normal[1]), cull_wide_from(c->normal[2])}, o = c->offset;
-    cull_int256 w = {{0, 0, 0, 0}}, x = w, y = w, z = w; // cofactors of row 4 in D
+    cull_int256 w = {{0, 0, 0, 0}}, x = w, y = w, z = w;
     cull_int256_multiply_add(&w, s.xy, n[2]);
     cull_int256_multiply_subtract(&w, s.xz, n[1]);
     cull_int256_multiply_add(&w, s.yz, n[0]);
@@ -375,6 +385,18 @@ static inline bool cull_meet_position(const cull_wide_plane *a, const cull_wide_
     out[1] = cull_int256_to_double(&y) / unit + 0.0;
     out[2] = cull_int256_to_double(&z) / unit + 0.0;
     return true;
+}
+
+// The meeting point in doubles, from the exact numerators and w, the cofactors of row 4 in D: each coordinate within 2^-50
+// of its own size (3 + 3 roundings, and the division's one). Signs and zeros are exact. false when there is none.
+// With N and O as for D, no minor, numerator or sum in between exceeds 2 M, M = N1 N2 O3 + N1 O2 N3 + O1 N2 N3, nor w
+// 6 N1 N2 N3: 64 bits do while both are below 2^62, as in nearly all of a hand-made map.
+static inline bool cull_meet_position(const cull_wide_plane *a, const cull_wide_plane *b, const cull_wide_plane *c, double out[3])
+{
+    const cull_row p = cull_row_of(a), q = cull_row_of(b), r = cull_row_of(c);
+    const double most = p.most * q.most * r.reach + (p.most * q.reach + p.reach * q.most) * r.most;
+    return 4 * most < CULL_MOST_64 && p.most * q.most * r.most < CULL_MOST_64 / 6 ? cull_meet_position_64(a, b, c, out)
+                                                                                 : cull_meet_position_256(a, b, c, out);
 }
 #define CULL_MEET_ERROR 8.881784197001252e-16 // 2^-50, of each coordinate's size
 

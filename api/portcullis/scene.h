@@ -62,7 +62,7 @@ CULL_API const char *cull_scene_zone_name(const cull_scene *scene, uint32_t zone
 CULL_API const char *cull_scene_door_name(const cull_scene *scene, uint32_t door);
 CULL_API uint32_t cull_scene_find_zone(const cull_scene *scene, const char *name); // UINT32_MAX: none
 CULL_API uint32_t cull_scene_find_door(const cull_scene *scene, const char *name);
-// Zones that a point or box touches. Writes at most capacity, returns how many there are.
+// Zones that a point or box touches. Writes at most capacity, returns how many there are: of NaN, or of min above max, 0.
 CULL_API uint32_t cull_scene_zones_at(const cull_scene *scene, const double point[3], uint32_t *zones, uint32_t capacity);
 CULL_API uint32_t cull_scene_zones_of_box(const cull_scene *scene, const double min[3], const double max[3], uint32_t *zones, uint32_t capacity);
 

@@ -74,6 +74,14 @@ int app_exit_code(result done)
     return done == RESULT_OK ? EXIT_GOOD : done == RESULT_NO_GL ? EXIT_NO_GL : EXIT_USAGE;
 }
 
+result app_check_gl(app *a, const renderer *g)
+{
+    const uint32_t errors = g ? renderer_errors(g) : 0;
+    if (!errors) return RESULT_OK;
+    report_error(&a->report, NULL, 0, "%u OpenGL errors, told above; what was drawn is not to be trusted: try another driver", errors);
+    return RESULT_NO_GL;
+}
+
 int parse_count(const char *text, uint32_t least, uint32_t most, uint32_t *out)
 {
     char *end;

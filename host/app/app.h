@@ -5,6 +5,7 @@
 
 #include "../core/chain.h"
 #include "../import/import.h"
+#include "../render/render.h"
 
 #define APP_VIEWS "FILE|auto:N|auto:walk:N|path:NAME" // what --views takes
 
@@ -40,6 +41,7 @@ typedef struct app_plugin_files {
 result app_open(app *a, const app_plugin_files *files);
 void app_close(app *a);
 int app_exit_code(result done);
+result app_check_gl(app *a, const renderer *g); // RESULT_NO_GL with a line where the driver made errors; g may be NULL
 
 typedef struct app_size { uint32_t width_px, height_px; } app_size;
 int parse_size(const char *text, app_size *out);                                     // "1280x720"; 0 when it is none

@@ -47,11 +47,18 @@ static void name_zones(const scene *s, char *out, size_t size)
     if (s->zone_count > NAMES_TOLD && used < size) snprintf(out + used, size - used, " and %u more", s->zone_count - NAMES_TOLD);
 }
 
-static result unknown_zone(app *a, const char *text)
+static result no_such_form(app *a, const char *text)
 {
     char names[1024];
     name_zones(a->scene, names, sizeof names);
     return report_error(&a->report, NULL, 0, "--zone '%s': write NAME=CHAIN; the zones of this scene are: %s", text, names);
+}
+
+static result unknown_zone(app *a, const char *text, const char *pattern)
+{
+    char names[1024];
+    name_zones(a->scene, names, sizeof names);
+    return report_error(&a->report, NULL, 0, "--zone '%s': there is no zone '%s'; the zones of this scene are: %s", text, pattern, names);
 }
 
 typedef enum zone_match { MATCH_NONE, MATCH_PATTERN, MATCH_EXACT } zone_match;
@@ -68,7 +75,7 @@ static result take_option(chain_book *b, const char *text, uint8_t *is_exact)
     uint32_t matches = 0;
     const char *equals = strchr(text, '=');
     const char *pattern = equals ? arena_text(&a->texts, text, (size_t)(equals - text)) : NULL;
-    if (!equals) return unknown_zone(a, text);
+    if (!equals || equals == text || !equals[1]) return no_such_form(a, text);
     if (!pattern) return report_no_memory(&a->report, NULL);
     for (uint32_t z = 0; z < a->scene->zone_count; ++z) {
         const zone_match how = match_of(pattern, a->scene->zones[z].name);
@@ -79,7 +86,7 @@ static result take_option(chain_book *b, const char *text, uint8_t *is_exact)
         b->of_options[z] = equals + 1;
         is_exact[z] = how == MATCH_EXACT;
     }
-    return matches ? RESULT_OK : unknown_zone(a, text);
+    return matches ? RESULT_OK : unknown_zone(a, text, pattern);
 }
 
 static result make_suffix(chain_book *b, const zone_options *zones)

@@ -13,7 +13,21 @@
 #include <unistd.h>
 
 enum { STRATEGIES_MOST = 64, SWAP_VIEWS_MOST = 1000000 };
-enum { KEY_VIEWS = 256, KEY_CULLER, KEY_ZONE, KEY_SWAP, KEY_SIZE, KEY_REPEAT, KEY_NO_TRUTH, KEY_IDS, KEY_DOORS, KEY_IMAGES, KEY_LATENCY, KEY_JSON, KEY_PLUGIN };
+enum {
+    KEY_VIEWS = 256,
+    KEY_CULLER,
+    KEY_ZONE,
+    KEY_SWAP,
+    KEY_SIZE,
+    KEY_REPEAT,
+    KEY_NO_TRUTH,
+    KEY_IDS,
+    KEY_DOORS,
+    KEY_IMAGES,
+    KEY_LATENCY,
+    KEY_JSON,
+    KEY_PLUGIN
+};
 
 typedef struct arguments {
     const char *scene, *views, *images, *json;
@@ -29,10 +43,14 @@ typedef struct arguments {
 
 static const struct argp_option options[] = {
     {"views", KEY_VIEWS, APP_VIEWS, 0, "the camera path; needed", 0},
-    {"culler", KEY_CULLER, "CHAIN|scene", 0, "a strategy: this chain in all zones, such as frustum or octree[leaf=64]+occlusion; "
-     "scene: what the scene file names per zone, frustum where it names none (default); may stand several times", 0},
-    {"zone", KEY_ZONE, "NAME=CHAIN", 0, "in every strategy these zones take this chain; NAME may be a pattern such as cellar*; may stand several times", 0},
-    {"swap", KEY_SWAP, "N", 0, "a further strategy swap/N: every N views each zone goes on to its chain of the next --culler, neighbours one apart", 0},
+    {"culler", KEY_CULLER, "CHAIN|scene", 0,
+     "a strategy: this chain in all zones, such as frustum or octree[leaf=64]+occlusion; "
+     "scene: what the scene file names per zone, frustum where it names none (default); may stand several times",
+     0},
+    {"zone", KEY_ZONE, "NAME=CHAIN", 0,
+     "in every strategy these zones take this chain; NAME may be a pattern such as cellar*; may stand several times", 0},
+    {"swap", KEY_SWAP, "N", 0, "a further strategy swap/N: every N views each zone goes on to its chain of the next --culler, neighbours one apart",
+     0},
     {"size", KEY_SIZE, "WxH", 0, "of the picture (default 1280x720)", 0},
     {"repeat", KEY_REPEAT, "N", 0, "passes over the path (default 3)", 0},
     {"no-truth", KEY_NO_TRUTH, NULL, 0, "time only: no pictures, no GL unless a culler tests", 0},
@@ -131,7 +149,9 @@ static uint32_t tell_failures(app *a, const arguments *q, const bench_result *b)
     uint32_t failed = 0;
     for (uint32_t i = 0; i < b->row_count; ++i) {
         const bench_row *row = &b->rows[i];
-        if (row->picture_differs) report_error(&a->report, NULL, 0, "%s: drawing what it said gives another picture than the truth", row->name);
+        if (row->picture_differs)
+            report_error(&a->report, NULL, 0, "%s: %llu pixels of %u views show something else than the items that it says it drew", row->name,
+                         (unsigned long long)row->picture_differs, row->pictures_compared);
         else if (bench_check_failed(row))
             report_error(&a->report, NULL, 0, "%s promises to lose nothing, and missed %llu pixels and %llu items; worst is view %u", row->name,
                          (unsigned long long)row->missed_pixels, (unsigned long long)row->missed_items, row->worst_view);
@@ -160,7 +180,8 @@ static result run_bench(app *a, const arguments *q, const camera_path *path, uin
     uint32_t count = 0;
     result done = make_strategies(a, q, strategies, &count);
     if (done != RESULT_OK) return done;
-    if (q->images && mkdir(q->images, 0777) != 0 && errno != EEXIST) return report_error(&a->report, q->images, 0, "cannot make the folder: %s", strerror(errno));
+    if (q->images && mkdir(q->images, 0777) != 0 && errno != EEXIST)
+        return report_error(&a->report, q->images, 0, "cannot make the folder: %s", strerror(errno));
     const bench_request bench = {.scene = a->scene, .path = path, .strategies = strategies, .doors = app_doors_of(&q->doors),
                                  .plugins = a->plugins, .services = &a->services,
                                  .strategy_count = count, .width_px = q->size.width_px, .height_px = q->size.height_px, .repeat = q->repeat,
@@ -187,7 +208,8 @@ static result check_early(app *a, const arguments *q)
 
 int command_bench(int argc, char **argv)
 {
-    static const struct argp parser = {options, parse, "SCENE", "Measures strategies on a scene and camera path against the truth.", NULL, NULL, NULL};
+    static const struct argp parser = {options, parse, "SCENE", "Measures strategies on a scene and camera path against the truth.",
+                                       NULL,    NULL,  NULL};
     arguments q = {.repeat = 3, .size = {1280, 720}, .truth = BENCH_TRUTH, .ids = BENCH_RUNS};
     if (argp_parse(&parser, argc, argv, 0, NULL, &q) != 0) return EXIT_USAGE;
     app a;

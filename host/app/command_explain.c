@@ -93,13 +93,13 @@ static void print_truth(const strategy *s, const arguments *q, const truth *t)
     const truth_item *items = t->items.items, *found = NULL;
     for (uint32_t i = 0; i < v->count; ++i)
         if (items[v->first + i].item == q->item) found = &items[v->first + i];
-    const char *judged = t->walls == WALLS_FRONT_ONLY ? ", of walls that face the eye" : "";
+    const char *judged = t->walls == WALLS_BOTH_SIDES ? "" : ", of walls that face the eye";
     const char *missed = found && !(s->drawn_bits[q->item / 32] >> (q->item % 32) & 1) ? ": missed" : "";
     const char *plural = found && found->polygons == 1 ? "" : "s";
     if (!found) printf("truth: owns no pixel of %ux%u%s\n", q->size.width_px, q->size.height_px, judged);
     else if (found->pixels)
-        printf("truth: owns %u pixel%s of %ux%u, by %u polygon%s%s%s\n", found->pixels, found->pixels == 1 ? "" : "s", q->size.width_px, q->size.height_px,
-               found->polygons, plural, judged, missed);
+        printf("truth: owns %u pixel%s of %ux%u, by %u polygon%s%s%s\n", found->pixels, found->pixels == 1 ? "" : "s", q->size.width_px,
+               q->size.height_px, found->polygons, plural, judged, missed);
     else printf("truth: is seen and leaves no depth, by %u polygon%s%s%s\n", found->polygons, plural, judged, missed);
 }
 
@@ -109,7 +109,8 @@ static result tell_truth(app *a, strategy *s, const arguments *q)
     const truth_request request = {a->scene, q->size.width_px, q->size.height_px, s->walls};
     result done = truth_open(&request, a->memory, &a->report, &t);
     if (done != RESULT_OK) return done;
-    done = truth_add_view(&t, s->g, &s->q->path->cameras[q->view], &a->report); // movers stand where the view had them
+    done = strategy_judge(s, q->view, &a->report, &t);
+    if (done == RESULT_OK) done = truth_add_view(&t, s->g, &s->q->path->cameras[q->view], &a->report); // movers stand where the view had them
     if (done == RESULT_OK) print_truth(s, q, &t);
     truth_close(&t);
     return done;
@@ -128,8 +129,10 @@ static result explain(app *a, const arguments *q, const bench_request *bench)
     if (draws && done == RESULT_OK) done = strategy_attach(&s, g, &a->report);
     const strategy_request request = {.view = q->view, .mode = RENDER_SHADED, .marks = MARK_DRAWN};
     if (done == RESULT_OK) done = strategy_run_view(&s, &request, &a->report, &view);
+    if (done == RESULT_OK) done = app_check_gl(a, g); // tests that fail say seen
     if (done == RESULT_OK) done = print_explanation(a, &s, q);
     if (done == RESULT_OK && q->with_truth) done = tell_truth(a, &s, q);
+    if (done == RESULT_OK) done = app_check_gl(a, g);
     strategy_close(&s);
     renderer_close(g);
     return done;
@@ -140,8 +143,8 @@ static result run_explain(app *a, const arguments *q, const camera_path *path)
     const uint32_t items = a->scene->item_count + a->scene->mover_count;
     if (q->view >= path->count) return report_error(&a->report, NULL, 0, "--view %u: the path has %u views, counted from 0", q->view, path->count);
     if (q->item >= items)
-        return report_error(&a->report, NULL, 0, "--item %u: the scene has %u items and %u movers behind them, counted from 0", q->item, a->scene->item_count,
-                            a->scene->mover_count);
+        return report_error(&a->report, NULL, 0, "--item %u: the scene has %u items and %u movers behind them, counted from 0", q->item,
+                            a->scene->item_count, a->scene->mover_count);
     chain_book book = {0};
     bench_strategy_request strategy = {0};
     result done = chain_book_open(a, &q->zones, &book);
@@ -155,8 +158,14 @@ static result run_explain(app *a, const arguments *q, const camera_path *path)
 
 int command_explain(int argc, char **argv)
 {
-    static const struct argp parser = {options, parse, "SCENE", "Tells why an item or mover was drawn or not in one view: zones and portals on the way, door, "
-                                       "plane, culler or limit.", NULL, NULL, NULL};
+    static const struct argp parser = {options,
+                                       parse,
+                                       "SCENE",
+                                       "Tells why an item or mover was drawn or not in one view: zones and portals on the way, door, "
+                                       "plane, culler or limit.",
+                                       NULL,
+                                       NULL,
+                                       NULL};
     arguments q = {.size = {1280, 720}};
     if (argp_parse(&parser, argc, argv, 0, NULL, &q) != 0) return EXIT_USAGE;
     app a;

@@ -15,7 +15,7 @@ typedef struct arguments {
 
 static const struct argp_option options[] = {
     {"json", 'j', NULL, 0, "one flat JSON object on stdout", 0},
-    {"doors", 'd', "open|shut", 0, "how doors stand (default open)", 0},
+    {"doors", 'd', "open|shut", 0, "how doors stand: open as the file says, of a .map all; shut: all (default open)", 0},
     {0},
 };
 
@@ -82,12 +82,13 @@ static json_t *info_of(const scene *s, const loader *plugins)
     json_t *bounds = json_pack("[f,f,f,f,f,f]", o[0] + b.min.x, o[1] + b.min.y, o[2] + b.min.z, o[0] + b.max.x, o[1] + b.max.y, o[2] + b.max.z);
     char hash[24];
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)s->hash);
-    json_t *info = json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:[f,f,f], s:f, s:I, s:I, s:s}", "zones", (json_int_t)s->zone_count,
-                             "portals", (json_int_t)s->portal_count, "items", (json_int_t)s->item_count, "objects", (json_int_t)s->object_count, "polygons",
-                             (json_int_t)s->polygon_count - movers.polygons, "triangles", (json_int_t)(s->index_count / 3) - movers.triangles, "materials",
-                             (json_int_t)s->material_count, "movers", (json_int_t)s->mover_count, "mover_polygons", movers.polygons, "mover_triangles",
-                             movers.triangles, "bytes", (json_int_t)s->memory.bytes, "bounds", bounds, "origin", o[0], o[1], o[2], "step", s->step,
-                             "flat_triangles", (json_int_t)s->flat_triangles, "places", (json_int_t)s->place_count, "hash", hash);
+    json_t *info =
+        json_pack("{s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:I, s:o, s:[f,f,f], s:f, s:I, s:I, s:s}", "zones", (json_int_t)s->zone_count,
+                  "portals", (json_int_t)s->portal_count, "items", (json_int_t)s->item_count, "objects", (json_int_t)s->object_count, "polygons",
+                  (json_int_t)s->polygon_count - movers.polygons, "triangles", (json_int_t)(s->index_count / 3) - movers.triangles, "materials",
+                  (json_int_t)s->material_count, "movers", (json_int_t)s->mover_count, "mover_polygons", movers.polygons, "mover_triangles",
+                  movers.triangles, "bytes", (json_int_t)(s->memory.bytes + s->file_bytes), "bounds", bounds, "origin", o[0], o[1], o[2], "step",
+                  s->step, "flat_triangles", (json_int_t)s->flat_triangles, "places", (json_int_t)s->place_count, "hash", hash);
     add_graph(info, s, plugins);
     return info;
 }

@@ -31,7 +31,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
 
 static const char *verbs_of(const cull_plugin *p)
 {
-    static const char *const names[8] = {"", "select", "filter", "select, filter", "cross", "select, cross", "filter, cross", "select, filter, cross"};
+    static const char *const names[8] = {"",      "select",        "filter",        "select, filter",
+                                         "cross", "select, cross", "filter, cross", "select, filter, cross"};
     return names[(p->select ? 1 : 0) | (p->filter ? 2 : 0) | (p->cross ? 4 : 0)];
 }
 
@@ -49,10 +50,12 @@ static json_t *plugin_json(const loaded_plugin *l)
     const cull_descriptor *d = l->plugin->descriptor;
     json_t *table = json_array();
     for (uint32_t i = 0; i < d->option_count; ++i)
-        json_array_append_new(table, json_pack("{s:o, s:o, s:o, s:o}", "key", json_text(d->options[i].key), "default", json_text(d->options[i].fallback),
-                                               "help", json_text(d->options[i].help), "sweep", json_text(d->options[i].sweep)));
-    return json_pack("{s:s, s:o, s:o, s:s, s:o, s:o, s:o}", "id", d->id, "version", json_text(d->version), "summary", json_text(d->summary), "verbs", verbs_of(l->plugin),
-                     "may_promise", promises_of(d->may_promise), "options", table, "path", json_text(l->path ? l->path : "built in"));
+        json_array_append_new(table,
+                              json_pack("{s:o, s:o, s:o, s:o}", "key", json_text(d->options[i].key), "default", json_text(d->options[i].fallback),
+                                        "help", json_text(d->options[i].help), "sweep", json_text(d->options[i].sweep)));
+    return json_pack("{s:s, s:o, s:o, s:s, s:o, s:o, s:o}", "id", d->id, "version", json_text(d->version), "summary", json_text(d->summary), "verbs",
+                     verbs_of(l->plugin), "may_promise", promises_of(d->may_promise), "options", table, "path",
+                     json_text(l->path ? l->path : "built in"));
 }
 
 static void print_json(const loader *l)
@@ -76,7 +79,8 @@ static void print_text(const loader *l)
     const loaded_plugin *plugins = loader_plugins(l, &count);
     for (uint32_t i = 0; i < count; ++i) {
         const cull_descriptor *d = plugins[i].plugin->descriptor;
-        printf("%s %s (%s): %s\n    %s\n", d->id, d->version, verbs_of(plugins[i].plugin), d->summary, plugins[i].path ? plugins[i].path : "built in");
+        printf("%s %s (%s): %s\n    %s\n", d->id, d->version, verbs_of(plugins[i].plugin), d->summary,
+               plugins[i].path ? plugins[i].path : "built in");
         for (uint32_t o = 0; o < d->option_count; ++o) printf("    %s=%s  %s\n", d->options[o].key, d->options[o].fallback, d->options[o].help);
     }
     const refused_plugin *refused = loader_refusals(l, &count);

@@ -100,6 +100,7 @@ static result draw(app *a, const arguments *q, const bench_request *bench, rende
     const truth_request request = {a->scene, q->size.width_px, q->size.height_px, s.walls};
     if (done == RESULT_OK && q->picture.kind == PICTURE_ERROR) done = truth_open(&request, a->memory, &a->report, &t);
     if (done == RESULT_OK) done = picture_of(&s, &t, &q->picture, &a->report, rgba, &missed);
+    if (done == RESULT_OK) done = app_check_gl(a, g);
     if (done == RESULT_OK) done = png_write(q->out, rgba, q->size.width_px, q->size.height_px, &a->report);
     if (done == RESULT_OK && q->picture.kind == PICTURE_ERROR) report_note(&a->report, "%llu missed pixels", (unsigned long long)missed);
     truth_close(&t);
@@ -110,7 +111,8 @@ static result draw(app *a, const arguments *q, const bench_request *bench, rende
 
 static result run_render(app *a, const arguments *q, const camera_path *path)
 {
-    if (q->picture.view >= path->count) return report_error(&a->report, NULL, 0, "--view %u: the path has %u views, counted from 0", q->picture.view, path->count);
+    if (q->picture.view >= path->count)
+        return report_error(&a->report, NULL, 0, "--view %u: the path has %u views, counted from 0", q->picture.view, path->count);
     chain_book book = {0};
     bench_strategy_request strategy = {0};
     result done = chain_book_open(a, &q->zones, &book);

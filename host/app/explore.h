@@ -26,9 +26,12 @@ typedef struct explore {
     render_layout *layout;
     uint32_t *order;      // scratch: the largest zone's items
     uint32_t order_count;
-    chain_spec chains[EXPLORE_CHAINS_MOST]; // that C goes through
+    const chain_spec **own; // by zone: the chain it was opened with; C goes through it and through `chains`
+    chain_spec chains[EXPLORE_CHAINS_MOST];
     uint32_t chain_count;
-    uint32_t *zone_chain; // by zone: place in `chains` that C put there, SCENE_NONE: as opened
+    uint32_t *zone_chain; // by zone: place in `chains` that it has now, + 1; 0: its own
+    uint32_t has_pictures; // some chain wanted slots
+    result failure;        // that a key met and that ends the viewer
     camera fly, frozen;
     freeze freeze;
     visible_set set;      // of the last frame that was culled
@@ -49,7 +52,9 @@ typedef struct explore_step { char key; double dt_s; } explore_step; // key: a l
 void explore_press(explore *e, char key);                 // what a key does once: see explore_input.c
 void explore_poll(explore *e, double dt_s);               // the window's keys and mouse
 void explore_move(explore *e, char key, double dt_s);     // w a s d q e i j k l (the arrows), as if held for dt_s
-result explore_cycle_chain(explore *e);                   // of the zone that the camera is in
+void explore_cycle_chain(explore *e);                     // of the zone that the camera is in; e->failure when layout and chain came apart
+void explore_find_zone(explore *e);                       // that the camera is in, into e->zone
+result explore_reserve(explore *e);                       // pictures and tests that the chains may want, from layout and renderer
 void explore_use_door(explore *e);                        // the one in front
 result explore_draw(explore *e);                          // one frame, to the window
 void explore_overlay(explore *e);                         // volumes, portals, text

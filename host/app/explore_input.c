@@ -8,9 +8,12 @@
 
 static const double TURN_DEG_S = 90, MOUSE_DEG_PX = 0.2, PITCH_MOST_DEG = 85, FASTER = 5;
 static const double ASPECT_PART = 1e-3; // a path says 1.777778 for 16:9: that is kept
+static const double ASPECT_MOST = 1024;    // of a camera, either way; a thinner window shows a distorted picture
 static const double PI = 3.14159265358979323846;
 
-typedef struct heading { double yaw, pitch; } heading; // radians
+typedef struct heading {
+    double yaw, pitch;
+} heading; // radians
 
 static heading heading_of(const camera *c)
 {
@@ -87,12 +90,14 @@ void explore_press(explore *e, char key)
 
 void explore_poll(explore *e, double dt_s)
 {
-    static const struct { char key, letter; } held[] = {{'w', 'w'}, {'s', 's'}, {'a', 'a'}, {'d', 'd'}, {'e', 'e'}, {'q', 'q'},
-                                                        {KEY_LEFT, 'j'}, {KEY_RIGHT, 'l'}, {KEY_UP, 'i'}, {KEY_DOWN, 'k'}};
+    static const struct {
+        char key, letter;
+    } held[] = {{'w', 'w'}, {'s', 's'},      {'a', 'a'},       {'d', 'd'},    {'e', 'e'},
+                {'q', 'q'}, {KEY_LEFT, 'j'}, {KEY_RIGHT, 'l'}, {KEY_UP, 'i'}, {KEY_DOWN, 'k'}};
     window_input in;
     renderer_window_input(e->g, &in);
     if (in.width_px > 0 && in.height_px > 0) {
-        const double aspect = (double)in.width_px / in.height_px;
+        const double aspect = fmin(fmax((double)in.width_px / in.height_px, 1 / ASPECT_MOST), ASPECT_MOST);
         e->width_px = in.width_px;
         e->height_px = in.height_px;
         if (fabs(aspect - e->fly.aspect) > ASPECT_PART * aspect) e->fly.aspect = aspect;

@@ -11,7 +11,8 @@
 enum { LOOP_MOST = 2 * CULL_MAX_PLANES + 16, VOLUMES_DRAWN_MOST = 256 };
 static const double VOLUME_REACH_MOST_M = 200; // how far a volume is drawn
 
-static const uint32_t PORTAL_OPEN = 0xff40e040, PORTAL_SHUT = 0xff3030ff, PORTAL_USED = 0xff00ffff, WHITE = 0xffffffff, LOUD = 0xff2020ff, DARK = 0xe0000000;
+static const uint32_t PORTAL_OPEN = 0xff40e040, PORTAL_SHUT = 0xff3030ff, PORTAL_USED = 0xff00ffff, WHITE = 0xffffffff, LOUD = 0xff2020ff,
+                      DARK = 0xe0000000;
 
 static uint32_t colour_of(uint32_t number)
 {
@@ -48,7 +49,8 @@ static void square_on(const cull_cut *cut, double reach, cull_point out[4])
     const double v[3] = {n[1] * u[2] - n[2] * u[1], n[2] * u[0] - n[0] * u[2], n[0] * u[1] - n[1] * u[0]};
     static const double corner[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
     for (int i = 0; i < 4; ++i)
-        out[i] = (cull_point){-cut->offset * n[0] + corner[i][0] * u[0] + corner[i][1] * v[0], -cut->offset * n[1] + corner[i][0] * u[1] + corner[i][1] * v[1],
+        out[i] = (cull_point){-cut->offset * n[0] + corner[i][0] * u[0] + corner[i][1] * v[0],
+                              -cut->offset * n[1] + corner[i][0] * u[1] + corner[i][1] * v[1],
                               -cut->offset * n[2] + corner[i][0] * u[2] + corner[i][1] * v[2]};
 }
 
@@ -62,9 +64,11 @@ static void add_volume(explore *e, const flow_volume *v, double reach)
     for (uint32_t i = 0; i < count; ++i) {
         const cull_plane p = v->volume.planes[i];
         const double n[3] = {(double)p.normal.x, (double)p.normal.y, (double)p.normal.z};
-        cuts[i] = (cull_cut){n[0], n[1], n[2], (double)p.offset + n[0] * (eye[0] - origin[0]) + n[1] * (eye[1] - origin[1]) + n[2] * (eye[2] - origin[2])};
+        cuts[i] =
+            (cull_cut){n[0], n[1], n[2], (double)p.offset + n[0] * (eye[0] - origin[0]) + n[1] * (eye[1] - origin[1]) + n[2] * (eye[2] - origin[2])};
     }
-    for (int k = 0; k < 6; ++k) cuts[count++] = (cull_cut){k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0, k == 4 ? 1 : k == 5 ? -1 : 0, reach};
+    for (int k = 0; k < 6; ++k)
+        cuts[count++] = (cull_cut){k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0, k == 4 ? 1 : k == 5 ? -1 : 0, reach};
     for (uint32_t i = 0; i + 6 < count; ++i) {
         uint32_t size = 4, now = 0;
         square_on(&cuts[i], 2 * reach, loops[0]);
@@ -133,10 +137,11 @@ static void write_counters(explore *e)
              "zones %u/%u  volumes %u  portals tried %u  merges %u\n"
              "items %llu/%u  polygons %llu/%u  movers %u/%u  draw calls %u\n"
              "cull %.1f us  frame %.1f ms  tests %u  stalls %u  limits %u  faults %u",
-             e->zone == SCENE_NONE ? "(outside all)" : s->zones[e->zone].name, chain_name, modes[e->mode], e->scissor == SCISSOR_ZONES ? "  scissor" : "", t->zones,
-             s->zone_count, t->volumes, t->crossings, t->portal_merges, (unsigned long long)t->items_drawn, s->item_count,
-             (unsigned long long)e->counters.polygons, s->polygon_count, t->movers_drawn, movers_counts(world_movers(e->w)).live, e->counters.draw_calls,
-             e->counters.cull_us, e->counters.frame_ms, t->queries, t->stalls, t->limits_hit, t->faults);
+             e->zone == SCENE_NONE ? "(outside all)" : s->zones[e->zone].name, chain_name, modes[e->mode],
+             e->scissor == SCISSOR_ZONES ? "  scissor" : "", t->zones, s->zone_count, t->volumes, t->crossings, t->portal_merges,
+             (unsigned long long)t->items_drawn, s->item_count, (unsigned long long)e->counters.polygons, s->polygon_count, t->movers_drawn,
+             movers_counts(world_movers(e->w)).live, e->counters.draw_calls, e->counters.cull_us, e->counters.frame_ms, t->queries, t->stalls,
+             t->limits_hit, t->faults);
     write_text(e, &(overlay_text){text, 8, 8, 1, WHITE});
     if (e->freeze != FREEZE_NOT) write_text(e, &(overlay_text){"CULLING FROZEN", 8, 80, 2, LOUD});
     else if (culls_nothing(e)) write_text(e, &(overlay_text){"NO CULLING IN THIS ZONE", 8, 80, 2, LOUD});

@@ -60,35 +60,11 @@ static uint32_t drive_collect(void *user, uint32_t zone, collect_how how, uint32
 
 // ---- Changes while it runs ----
 
-static void name_zone(explore *e)
+void explore_find_zone(explore *e)
 {
     uint32_t zones[8];
     const uint32_t count = graph_zones_at(world_graph(e->w), e->fly.eye, 0, zones, 8);
     e->zone = count ? zones[0] : SCENE_NONE;
-}
-
-static result reorder(explore *e, uint32_t zone)
-{
-    world_order(e->w, zone, e->order);
-    return render_layout_reorder(e->layout, zone, e->order, &e->a->report);
-}
-
-result explore_cycle_chain(explore *e)
-{
-    const scene *s = e->a->scene;
-    if (e->zone == SCENE_NONE || !s->zones[e->zone].item_count) {
-        snprintf(e->message, sizeof e->message, "the camera is in no zone that has items");
-        return RESULT_OK;
-    }
-    e->zone_chain[e->zone] = e->zone_chain[e->zone] == SCENE_NONE ? 0 : (e->zone_chain[e->zone] + 1) % e->chain_count;
-    const chain_spec *spec = &e->chains[e->zone_chain[e->zone]];
-    e->freeze = FREEZE_NOT; // its set is of the old order
-    result done = world_set_chain(e->w, e->zone, spec, &e->a->report);
-    if (done == RESULT_OK) done = reorder(e, e->zone);
-    e->counters.swaps += done == RESULT_OK;
-    e->counters.swap_failures += done != RESULT_OK;
-    snprintf(e->message, sizeof e->message, done == RESULT_OK ? "zone '%s' is culled by %s" : "zone '%s': %s failed, the old chain stays", s->zones[e->zone].name, spec->text);
-    return done;
 }
 
 // How far ahead the door is: its mover, or else the portals that it closes. INFINITY: not in front.
@@ -154,7 +130,8 @@ static void cull_and_draw(explore *e)
 
 static void draw_frozen(explore *e)
 {
-    for (uint32_t i = 0; i < e->set.zone_count; ++i) renderer_draw(e->g, e->layout, e->set.zones[i].zone, e->set.zones[i].runs, e->set.zones[i].run_count);
+    for (uint32_t i = 0; i < e->set.zone_count; ++i)
+        renderer_draw(e->g, e->layout, e->set.zones[i].zone, e->set.zones[i].runs, e->set.zones[i].run_count);
     renderer_draw_movers(e->g, e->layout, e->set.movers, e->set.mover_count);
 }
 
@@ -166,8 +143,11 @@ static void count_polygons(explore *e)
         const visible_zone *z = &e->set.zones[i];
         world_order(e->w, z->zone, e->order);
         for (uint32_t r = 0; r < z->run_count; ++r)
-            for (uint32_t p = z->runs[r].first; p < z->runs[r].first + z->runs[r].count; ++p) e->counters.polygons += s->items[e->order[p]].polygon_count;
+            for (uint32_t p = z->runs[r].first; p < z->runs[r].first + z->runs[r].count; ++p)
+                e->counters.polygons += s->items[e->order[p]].polygon_count;
     }
+    for (uint32_t i = 0; i < e->set.mover_count; ++i)
+        if (e->set.movers[i] < s->mover_count) e->counters.polygons += s->items[s->item_count + e->set.movers[i]].polygon_count;
 }
 
 result explore_draw(explore *e)
@@ -176,7 +156,7 @@ result explore_draw(explore *e)
     frame_request q = {.camera = &e->fly, .width_px = e->width_px, .height_px = e->height_px, .mode = e->mode};
     if (e->freeze == FREEZE_NOT) q.scissor = e->scissor;
     else q.faces = FACES_FRONT; // so that one looks into rooms from outside
-    name_zone(e);
+    explore_find_zone(e);
     world_set_time(e->w, e->time_s);
     renderer_poses(e->g, world_poses(e->w));
     const result begun = renderer_begin(e->g, &q, &e->a->report);

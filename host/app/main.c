@@ -69,6 +69,7 @@ int main(int argc, char **argv)
     const int code = run_command(argc, argv);
     errno = 0;
     if (fflush(stdout) == 0 && !ferror(stdout)) return code;
-    fprintf(stderr, "portcullis: error: cannot write to stdout: %s; make room, or send it elsewhere\n", errno ? strerror(errno) : "an earlier write failed");
+    fprintf(stderr, "portcullis: error: cannot write to stdout: %s; make room, or send it elsewhere\n",
+            errno ? strerror(errno) : "an earlier write failed");
     return EXIT_USAGE;
 }

@@ -1,7 +1,8 @@
-// The loop of `brute`, included by one source file per instruction set, which defines before:
+// The loop of `brute`, included by one source file per instruction set.
+// SPDX-License-Identifier: MIT
+// That file defines before:
 //   uint32_t test16(const brute_plane *, uint32_t plane_count, uint32_t i)  bit b: box i + b touches all the planes
 //   uint32_t *put64(uint64_t bits, uint32_t base, uint32_t *out)            base + b for each set bit, may scribble 16 more
-// SPDX-License-Identifier: MIT
 // Invariant: the stream of places where visibility changes, taken in pairs, is the list of runs as (first, end).
 
 enum { CHUNK_WORDS = 16, CHUNK_ITEMS = CHUNK_WORDS * 64 }; // a chunk's runs are finished while they are in the first cache

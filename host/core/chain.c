@@ -161,11 +161,46 @@ static void loading_ends(const chain_request *q)
     if (q->loading) pthread_mutex_unlock(q->loading);
 }
 
+// ---- Baked indices ----
+
+// The extension asks with the host that the culler was made with, which is the first member of its stage.
+static const void *stage_extension(const cull_host *host, const cull_zone *zone, const char *id)
+{
+    const chain_stage *stage = (const chain_stage *)(const void *)host;
+    const cull_host *services = &stage->services->host;
+    if (!zone || zone != stage->zone || strcmp(id, CULL_EXT_BLOB) != 0) return services->get_extension(services, zone, id);
+    return stage->blob.bytes ? &stage->blob : NULL;
+}
+
+bake_key chain_bake_key(const chain *c, uint32_t place)
+{
+    const chain_stage *stage = &c->stages[place];
+    const cull_zone *zone = place == 0 ? &c->zone : &c->ordered_zone;
+    return (bake_key){stage->plugin->descriptor, stage->options_hash, bake_zone_hash(zone, place == 0 ? NULL : c->hierarchy), c->data->index};
+}
+
+static void stage_find_blob(chain *c, uint32_t place, const char *const *values)
+{
+    chain_stage *stage = &c->stages[place];
+    const scene *s = c->data->scene;
+    stage->zone = place == 0 ? &c->zone : &c->ordered_zone;
+    stage->options_hash = bake_options_hash(stage->plugin->descriptor, values);
+    if (!s->bake_count) return; // nothing is hashed for nothing
+    const bake_key key = chain_bake_key(c, place);
+    const scene_bake *found = bake_find(s, &key);
+    if (found) stage->blob = (cull_blob){found->bytes, found->size};
+}
+
+// ---- Building ----
+
 static cull_result stage_create(chain_stage *stage, const char *const *values, const chain_request *q)
 {
     cull_culler *made = NULL; // not the stage's own: what a failed create leaves there is nothing to destroy
     loading_begins(q);
-    const cull_result code = stage->plugin->create(&q->services->host, values, &made);
+    stage->services = q->services;
+    stage->host = q->services->host;
+    stage->host.get_extension = stage_extension;
+    const cull_result code = stage->plugin->create(&stage->host, values, &made);
     loading_ends(q);
     if (code == CULL_OK) stage->culler = made;
     return code;
@@ -179,8 +214,8 @@ static result stage_build(chain *c, uint32_t place, const chain_request *q, repo
     if (done != RESULT_OK) return done;
     const cull_result created = stage_create(stage, values, q);
     if (!stage->culler) return tell_failure(created != CULL_OK ? created : CULL_ERR_ZONE, stage, "create an index for", r);
-    const cull_zone *zone = place == 0 ? &c->zone : &c->ordered_zone;
-    const cull_result code = stage->plugin->build(stage->culler, zone, c->hierarchy, &stage->built); // the first is lent none: it is not taken yet
+    stage_find_blob(c, place, values);
+    const cull_result code = stage->plugin->build(stage->culler, stage->zone, c->hierarchy, &stage->built); // the first is lent none: it is not taken yet
     if (code != CULL_OK) return tell_failure(code, stage, "build", r);
     done = built_is_sound(stage, c->hierarchy, r);
     if (done == RESULT_OK) done = slots_are_free(c, place, r);

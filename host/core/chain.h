@@ -4,6 +4,7 @@
 #ifndef PORTCULLIS_HOST_CHAIN_H
 #define PORTCULLIS_HOST_CHAIN_H
 
+#include "bake.h"
 #include "host.h"
 #include "loader.h"
 #include "zone_data.h"
@@ -29,6 +30,11 @@ result chain_parse(const char *text, arena *texts, report *r, chain_spec *out);
 
 typedef enum stage_role { ROLE_SELECT, ROLE_FILTER, ROLE_CROSS } stage_role;
 typedef struct chain_stage {
+    cull_host host; // what its culler is made with: the services', and the baked index of the zone. Stands first: see chain.c
+    const host_services *services;
+    const cull_zone *zone; // that its culler is lent
+    cull_blob blob;        // the baked index; bytes NULL: there is none
+    uint64_t options_hash;
     const cull_plugin *plugin;
     cull_culler *culler;
     cull_built built;
@@ -61,6 +67,8 @@ typedef struct chain_request {
 // [main; with `loading` any thread, and the services' allocator is asked from it] Everything but the spec is borrowed for
 // the chain's life. On failure a line, and nothing is left.
 result chain_build(const chain_request *q, report *r, chain **out);
+// Of a built chain's stage: under what its index is kept and found.
+bake_key chain_bake_key(const chain *c, uint32_t stage);
 void chain_close(chain *c); // NULL is fine; no viewer of it may live
 
 #endif

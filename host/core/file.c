@@ -11,9 +11,14 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-static const size_t FILE_BYTES_MOST = (size_t)1 << 32; // importers count in 32 bits
+static const uint64_t TEXT_BYTES_MOST = UINT64_C(1) << 32; // importers count in 32 bits
 
 result file_read(const char *path, const allocator *memory, report *r, char **out_bytes, size_t *out_size)
+{
+    return file_read_most(path, TEXT_BYTES_MOST, memory, r, out_bytes, out_size);
+}
+
+result file_read_most(const char *path, uint64_t bytes_most, const allocator *memory, report *r, char **out_bytes, size_t *out_size)
 {
     struct stat status;
     if (stat(path, &status) == 0 && !S_ISREG(status.st_mode)) // before opening: a pipe without a writer would block there
@@ -25,9 +30,9 @@ result file_read(const char *path, const allocator *memory, report *r, char **ou
         return report_error(r, path, 0, "cannot read it: %s; check the disk", strerror(errno));
     }
     const size_t size = (size_t)status.st_size;
-    if (size > FILE_BYTES_MOST) {
+    if ((uint64_t)status.st_size > bytes_most || size >= SIZE_MAX) {
         fclose(file);
-        return report_error(r, path, 0, "larger than 4 GiB; split it");
+        return report_error(r, path, 0, "larger than %llu GiB; split it", (unsigned long long)(bytes_most >> 30));
     }
     char *bytes = memory_alloc(memory, size + 1, 1);
     if (!bytes) {

@@ -1,6 +1,5 @@
-// Flow: one view's way through the zones. Opening, where it starts, and the work list. See flow.h.
+// Flow: one view's way through the zones. Opening, where it starts, and the run. See flow.h.
 // SPDX-License-Identifier: MIT
-// Invariant: a node is queued at most once at a time, so the ring holds them all.
 #include "flow_internal.h"
 
 #include <portcullis/box.h>
@@ -14,16 +13,6 @@ static double larger(double a, double b)
 }
 
 // ---- Opening ----
-
-static double hulls_height(const scene *s, const scene_zone *z, const double p[3])
-{
-    double height = INFINITY;
-    for (uint32_t i = 0; i < z->hull_count; i++) {
-        const double above = scene_hull_height(s, z->first_hull + i, p);
-        if (above < height) height = above;
-    }
-    return z->hull_count > 0 ? larger(height, 0) : 0;
-}
 
 static void gate_make(flow *f, uint32_t portal)
 {
@@ -42,11 +31,7 @@ static void gate_make(flow *f, uint32_t portal)
         }
         g->bend = larger(g->bend, fabs(above));
     }
-    for (int side = 0; side < 2; side++) {
-        double *out = &f->sticking_out[p->zones[side]];
-        for (uint32_t i = 0; i < p->point_count; i++) *out = larger(*out, hulls_height(f->scene, &f->scene->zones[p->zones[side]], points[i]));
-        *out = larger(*out, g->bend);
-    }
+    f->most_bend = larger(f->most_bend, g->bend);
 }
 
 // Planes that this box lies inside of are left out of the zone's volumes: it holds the items, and where movers may come
@@ -73,8 +58,12 @@ static void places_make(flow *f, const zone_data *zones)
         memcpy(f->places[z].origin, f->scene->zones[z].origin, sizeof f->places[z].origin);
     }
     for (uint32_t p = 0; p < f->scene->portal_count; p++) gate_make(f, p);
+    zone_seams_find(f->scene, f->seams);
+    f->first_stray = f->scene->zone_count;
+    for (uint32_t z = f->scene->zone_count; z-- > 0;)
+        if (f->scene->zones[z].flags & ZONE_STRAY) f->first_stray = z;
     for (uint32_t z = 0; z < f->scene->zone_count; z++)
-        f->most_start_m = larger(f->most_start_m, f->sticking_out[z] + (double)f->places[z].radius / 65536);
+        f->most_start_m = larger(f->most_start_m, f->seams[z].out + (double)f->places[z].radius / 65536);
 }
 
 static void sizes_find(flow *f)
@@ -95,13 +84,14 @@ static result arrays_open(flow *f)
     const size_t zones = f->scene->zone_count, portals = f->scene->portal_count, nodes = f->node_capacity;
     arena *a = &f->blocks;
     f->places = arena_push(a, zones, sizeof *f->places);
-    f->sticking_out = arena_push(a, zones, sizeof *f->sticking_out);
+    f->seams = arena_push(a, zones, sizeof *f->seams);
     f->gates = arena_push(a, portals, sizeof *f->gates);
     f->nodes = arena_push(a, nodes, sizeof *f->nodes);
     f->planes = arena_push(a, f->plane_capacity, sizeof *f->planes);
     f->records = arena_push(a, f->plane_capacity, sizeof *f->records);
     f->states = arena_push(a, zones, sizeof *f->states);
     f->queue = arena_push(a, nodes, sizeof *f->queue);
+    f->queue_places = arena_push(a, nodes, sizeof *f->queue_places);
     f->ways = arena_push(a, 2 * portals, sizeof *f->ways);
     for (int i = 0; i < 2; i++) f->polygon[i] = arena_push(a, f->polygon_capacity, sizeof *f->polygon[i]);
     for (int i = 0; i < 2; i++) f->order[i] = arena_push(a, zones, sizeof *f->order[i]);
@@ -110,15 +100,16 @@ static result arrays_open(flow *f)
     f->starts = arena_push(a, zones, sizeof *f->starts);
     f->volumes = arena_push(a, nodes, sizeof *f->volumes);
     f->by_zone = arena_push(a, nodes, sizeof *f->by_zone);
-    const int has_all = f->places && f->sticking_out && f->gates && f->nodes && f->planes && f->records && f->states && f->queue && f->ways &&
+    const int has_all = f->places && f->seams && f->gates && f->nodes && f->planes && f->records && f->states && f->queue && f->queue_places && f->ways &&
                         f->polygon[0] && f->polygon[1] && f->order[0] && f->order[1] && f->found && f->sorted && f->starts && f->volumes &&
                         f->by_zone;
     if (!has_all) return RESULT_NO_MEMORY;
-    memset(f->sticking_out, 0, zones * sizeof *f->sticking_out);
     memset(f->states, 0, zones * sizeof *f->states);
     memset(f->nodes, 0, nodes * sizeof *f->nodes);
     memset(f->ways, 0, 2 * portals);
-    return RESULT_OK;
+    memset(f->queue_places, 0, nodes * sizeof *f->queue_places);
+    f->lent = list_open(f->memory, CULL_MAX_PLANES, sizeof(cull_plane));
+    return f->lent.items ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
 result flow_open(const flow_open_request *q, const allocator *memory, flow **out)
@@ -135,6 +126,10 @@ result flow_open(const flow_open_request *q, const allocator *memory, flow **out
         return RESULT_NO_MEMORY;
     }
     places_make(f, q->zones);
+    if (flow_ports_open(f) != RESULT_OK) {
+        flow_close(f);
+        return RESULT_NO_MEMORY;
+    }
     *out = f;
     return RESULT_OK;
 }
@@ -142,29 +137,13 @@ result flow_open(const flow_open_request *q, const allocator *memory, flow **out
 void flow_close(flow *f)
 {
     if (!f) return;
+    flow_ports_close(f);
+    list_close(&f->lent, f->memory);
     arena_free(&f->blocks);
     memory_free(f->memory, f, 1, sizeof *f);
 }
 
-// ---- The work list ----
-
-void flow_queue(flow *f, flow_node *n)
-{
-    if (n->flags & NODE_QUEUED) return;
-    n->flags |= NODE_QUEUED;
-    uint32_t place = f->queue_first + f->queue_count++;
-    if (place >= f->node_capacity) place -= f->node_capacity;
-    f->queue[place] = (uint32_t)(n - f->nodes);
-}
-
-static flow_node *queue_pop(flow *f)
-{
-    flow_node *n = &f->nodes[f->queue[f->queue_first]];
-    f->queue_first = f->queue_first + 1 < f->node_capacity ? f->queue_first + 1 : 0;
-    f->queue_count--;
-    n->flags &= ~(uint32_t)NODE_QUEUED;
-    return n;
-}
+// ---- Zones reached ----
 
 flow_state *flow_reach(flow *f, uint32_t zone, double key)
 {
@@ -236,7 +215,7 @@ static void run_begin(flow *f, const flow_request *q)
 {
     for (uint32_t i = 0; i < f->found_count; i++) f->states[f->found[i].zone] = (flow_state){0};
     memset(f->ways, 0, 2 * (size_t)f->scene->portal_count);
-    f->found_count = f->queue_first = f->queue_count = f->pool_count = 0;
+    f->found_count = f->queue_count = f->queue_turns = f->pool_count = 0;
     f->plane_count = 2 * f->scene->zone_count * FLOW_ROOT_SIDES;
     f->source_count = 1;
     f->result = (flow_result){0};
@@ -264,11 +243,10 @@ static double place_distance(const view_place *p, const double eye[3])
 }
 
 // graph_zones_at knows one distance; this is the zone's own, which a huge neighbour's radius does not reach into.
-static int is_start(const flow *f, uint32_t zone)
+static int is_start(const flow *f, uint32_t zone, double beyond_m)
 {
-    const scene_zone *z = &f->scene->zones[zone];
-    const double near_m = f->corner_m + (double)f->places[zone].radius / 65536 + f->sticking_out[zone];
-    return hulls_height(f->scene, z, f->base.camera->eye) <= near_m;
+    const double near_m = beyond_m + (double)f->places[zone].radius / 65536 + f->seams[zone].out;
+    return zone_height(f->scene, zone, f->base.camera->eye) <= near_m;
 }
 
 static void start(flow *f)
@@ -276,9 +254,12 @@ static void start(flow *f)
     const scene *s = f->scene;
     const double *eye = f->base.camera->eye;
     const uint32_t count = graph_zones_at(f->graph, eye, f->corner_m + f->most_start_m, f->starts, s->zone_count);
-    for (uint32_t i = 0; i < count && i < s->zone_count; i++)
-        if (is_start(f, f->starts[i])) flow_root_add(f, &(flow_arrival){f->starts[i], SCENE_NONE, SCENE_NONE, 0});
-    if (f->found_count > 0) return;
+    // A zone that only the near plane reaches into does not hold the eye, and says nothing of what stands between the zones.
+    uint32_t holds = 0;
+    for (uint32_t i = 0; i < count && !holds; i++) holds = (uint32_t)is_start(f, f->starts[i], 0);
+    for (uint32_t i = 0; i < count && holds; i++)
+        if (is_start(f, f->starts[i], f->corner_m)) flow_root_add(f, &(flow_arrival){f->starts[i], SCENE_NONE, SCENE_NONE, 0});
+    if (holds) return;
     f->result.is_everything = 1;
     for (uint32_t z = 0; z < s->zone_count; z++)
         if (!(s->zones[z].flags & ZONE_STRAY))
@@ -291,10 +272,10 @@ void flow_run(flow *f, const flow_request *q, flow_result *out)
     run_begin(f, q);
     start(f);
     while (f->queue_count > 0) {
-        flow_node *n = queue_pop(f);
+        flow_node *n = flow_queue_pop(f);
         if (!(n->flags & NODE_DEAD)) flow_leave(f, q, n);
     }
-    for (uint32_t z = 0; z < f->scene->zone_count; z++)
+    for (uint32_t z = f->first_stray; z < f->scene->zone_count; z++) // made up ones stand last
         if (f->scene->zones[z].flags & ZONE_STRAY) flow_root_add(f, &(flow_arrival){z, SCENE_NONE, SCENE_NONE, INFINITY});
     f->queue_count = 0;
     flow_finish(f, out);

@@ -34,6 +34,7 @@ typedef struct flow_volume {
     uint32_t zone;
     uint32_t way;         // 2 * portal + side that it came in through, as of the zone that it came from; SCENE_NONE: started here, or merged
     uint32_t parent;      // in flow_result.volumes (what took its place where it merged); SCENE_NONE: started here, or merged
+    uint32_t is_merged;   // 1: a screen rectangle, or the whole picture, around several ways into the zone
     float rectangle[4];   // of the picture that it covers: least x, least y, greatest x, greatest y, in -1 .. 1; whole where it is not known
 } flow_volume;
 

@@ -30,14 +30,19 @@ double flow_eye_height(const flow *f, uint32_t way)
     return way % 2 == 0 ? above : -above;
 }
 
-static double gate_distance(const flow_gate *g, const double eye[3])
+double flow_gate_distance(const double low[3], const double high[3], const double eye[3])
 {
     double sum = 0;
     for (int i = 0; i < 3; i++) {
-        const double off = eye[i] < g->low[i] ? g->low[i] - eye[i] : eye[i] > g->high[i] ? eye[i] - g->high[i] : 0;
+        const double off = eye[i] < low[i] ? low[i] - eye[i] : eye[i] > high[i] ? eye[i] - high[i] : 0;
         sum += off * off;
     }
     return sqrt(sum);
+}
+
+static double gate_distance(const flow_gate *g, const double eye[3])
+{
+    return flow_gate_distance(g->low, g->high, eye);
 }
 
 static int is_near(const flow *f, uint32_t zone, uint32_t way, double height)
@@ -46,25 +51,39 @@ static int is_near(const flow *f, uint32_t zone, uint32_t way, double height)
     return fabs(height) <= near_m && gate_distance(&f->gates[way / 2], f->base.camera->eye) <= near_m;
 }
 
-// A line that came in through one portal goes on behind its plane. A polygon that touches that plane with an edge, and is
-// else before it, is passed by none: without this, two portals that meet at an edge would feed each other. One that
-// lies in the plane is not judged.
-static int is_before_entry(const flow *f, const flow_node *n, const flow_polygon *p)
+// Heights of a polygon behind the plane of the portal that a node came in through.
+typedef struct entry_heights {
+    double least, most, bend, flat; // bend: that the entry's points lie off its plane; flat: what rounding alone may do
+} entry_heights;
+
+static entry_heights heights_behind_entry(const flow *f, const flow_node *n, const flow_polygon *p)
 {
-    if (!(n->flags & NODE_CLIPPED)) return 0;
     const scene_portal *entry = &f->scene->portals[n->way / 2];
     const double *at = f->scene->portal_points[entry->first_point], *eye = f->base.camera->eye;
     const double sign = n->way % 2 == 0 ? -1 : 1, base[3] = {at[0] - eye[0], at[1] - eye[1], at[2] - eye[2]};
-    // Differences of coordinates on the scene's step: 2^-40 of them is far above double rounding, far below a step.
-    const double flat = f->gates[n->way / 2].bend + (double)f->places[n->zone].radius / 1099511627776;
-    double least = INFINITY, most = -INFINITY;
+    const double bend = f->gates[n->way / 2].bend;
+    // Points on the scene's step are off the plane that they had by under 4 steps between them: no bend, as who made the
+    // scene sees it. Differences of such points: 2^-40 of them is far above double rounding, far below a step.
+    const double rounded = 4 * f->scene->step, least_flat = (double)f->places[n->zone].radius / 1099511627776;
+    entry_heights h = {.least = INFINITY, .most = -INFINITY, .bend = bend > rounded ? bend : 0};
+    h.flat = least_flat + (bend > rounded ? 0 : bend);
     for (uint32_t i = 0; i < p->count; i++) {
         const cull_point q = p->points[i];
         const double above = entry->plane[0] * (q.x - base[0]) + entry->plane[1] * (q.y - base[1]) + entry->plane[2] * (q.z - base[2]);
-        least = sign * above < least ? sign * above : least;
-        most = sign * above > most ? sign * above : most;
+        h.least = sign * above < h.least ? sign * above : h.least;
+        h.most = sign * above > h.most ? sign * above : h.most;
     }
-    return most <= flat && least < -flat;
+    return h;
+}
+
+// A line that came in through one portal goes on behind its plane, or where its points bend it before. A polygon that
+// touches that plane with an edge, and is else before it, is passed by none: without this, two portals that meet at an
+// edge would feed each other. One that lies in the plane is not judged.
+static int is_before_entry(const flow *f, const flow_node *n, const flow_polygon *p)
+{
+    if (!(n->flags & NODE_CLIPPED)) return 0;
+    const entry_heights h = heights_behind_entry(f, n, p);
+    return h.most <= h.flat - h.bend && h.least < -h.flat - h.bend;
 }
 
 static int is_on_path(const flow *f, const flow_node *n, uint32_t portal)
@@ -93,7 +112,6 @@ static flow_node *node_new(flow *f, const crossing *c, uint32_t planes)
     *n = (flow_node){.planes = f->planes + f->plane_count, .records = f->records + f->plane_count, .plane_count = planes,
                      .zone = c->target, .way = c->way, .parent = (uint32_t)(c->from - f->nodes), .key = c->key,
                      .path = c->from->path | (uint64_t)1 << (c->way / 2 % 64)};
-    if (!c->is_near && flow_eye_height(f, c->way) > flow_near_m(f, c->from->zone, c->way / 2)) n->flags |= NODE_CLIPPED;
     f->plane_count += planes;
     s->nodes[s->count++] = number;
     return n;
@@ -108,7 +126,10 @@ static void same_add(flow *f, const crossing *c)
     }
     const flow_state *s = flow_reach(f, c->target, c->key);
     for (uint32_t i = 0; i < s->count; i++)
-        if (f->nodes[s->nodes[i]].source == from->source) return;
+        if (f->nodes[s->nodes[i]].source == from->source) {
+            flow_nearer(f, &f->nodes[s->nodes[i]], c->key);
+            return;
+        }
     if (flow_must_merge(f, s, from->plane_count)) {
         flow_merge_add(f, c->target, &from->rectangle, c->key);
         return;
@@ -131,15 +152,24 @@ static flow_record record_find(const flow_node *from, cull_plane plane)
     return (flow_record){plane, from->zone};
 }
 
-static int is_any_around(const flow *f, const flow_state *s, const flow_candidate *c, const flow_rectangle *r)
+// What goes on from there passes no portal before the plane of its entry, whatever planes the crosser wrote: who lies in
+// it has to be behind that plane too.
+static int is_behind_entry(const flow *f, const crossing *c, const flow_node *other)
+{
+    if (!(other->flags & NODE_CLIPPED) || other->way == c->way || is_on_path(f, c->from, other->way / 2)) return 1;
+    const entry_heights h = heights_behind_entry(f, other, &c->polygon);
+    return h.least >= -h.flat - h.bend;
+}
+
+static flow_node *find_around(const flow *f, const flow_state *s, const crossing *by, const flow_candidate *c, const flow_rectangle *r)
 {
     for (uint32_t i = 0; i < s->count; i++) {
-        const flow_node *other = &f->nodes[s->nodes[i]];
+        flow_node *other = &f->nodes[s->nodes[i]];
         const int fits = r->low[0] >= other->rectangle.low[0] && r->low[1] >= other->rectangle.low[1] &&
                          r->high[0] <= other->rectangle.high[0] && r->high[1] <= other->rectangle.high[1];
-        if (fits && flow_is_inside(f, c, other)) return 1;
+        if (fits && is_behind_entry(f, by, other) && flow_is_inside(f, c, other)) return other;
     }
-    return 0;
+    return NULL;
 }
 
 static void narrow_add(flow *f, const crossing *c, const cull_plane *planes, uint32_t count)
@@ -148,12 +178,18 @@ static void narrow_add(flow *f, const crossing *c, const cull_plane *planes, uin
     flow_record records[CULL_MAX_PLANES];
     for (uint32_t i = 0; i < count; i++) records[i] = record_find(c->from, planes[i]);
     const flow_rectangle rectangle = flow_rectangle_of(f, &c->polygon);
-    if (is_any_around(f, s, &(flow_candidate){records, &c->polygon, count, c->way}, &rectangle)) return;
+    flow_node *around = find_around(f, s, c, &(flow_candidate){records, &c->polygon, count, c->way}, &rectangle);
+    if (around) {
+        flow_nearer(f, around, c->key);
+        return;
+    }
     if (flow_must_merge(f, s, count)) {
         flow_merge_add(f, c->target, &rectangle, c->key);
         return;
     }
     flow_node *n = node_new(f, c, count);
+    // Not what passed unclipped: that stands for every portal that brings its source, and lies not behind the first one's plane.
+    if (flow_eye_height(f, c->way) > flow_near_m(f, c->from->zone, c->way / 2)) n->flags |= NODE_CLIPPED;
     n->source = f->source_count++;
     n->rectangle = rectangle;
     for (uint32_t i = 0; i < count; i++) {
@@ -182,6 +218,7 @@ static void take(flow *f, const crossing *c)
     f->ways[c->way] = WAY_CROSSED;
     if (s->flags & STATE_ROOT) {
         (void)flow_reach(f, c->target, c->key); // has all; maybe nearer this way
+        flow_nearer(f, root_node(f, c->target), c->key);
         return;
     }
     if (!c->is_near && flow_must_merge(f, s, 0)) { // no need to ask
@@ -193,7 +230,7 @@ static void take(flow *f, const crossing *c)
         same_add(f, c);
         return;
     }
-    cull_plane planes[CULL_MAX_PLANES];
+    cull_plane *planes = f->lent.items;
     uint32_t count = 0;
     const flow_crosser *crosser = &c->request->crosser;
     const cull_volume in = {c->from->planes, c->from->plane_count, 0};
@@ -233,7 +270,10 @@ static void portal_try(flow *f, crossing *c)
 void flow_leave(flow *f, const flow_request *q, flow_node *n)
 {
     const scene_zone *z = &f->scene->zones[n->zone];
-    for (uint32_t i = 0; i < z->portal_count && !(n->flags & NODE_DEAD); i++) {
+    flow_port_walk walk;
+    uint32_t i;
+    flow_ports_start(f, n, &walk);
+    while (!(n->flags & NODE_DEAD) && flow_ports_next(&walk, &i)) {
         const uint32_t way = f->scene->zone_portals[z->first_portal + i];
         crossing c = {.request = q, .from = n, .way = way, .local = i, .target = f->scene->portals[way / 2].zones[1 - way % 2]};
         portal_try(f, &c);

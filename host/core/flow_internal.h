@@ -5,7 +5,10 @@
 #ifndef PORTCULLIS_HOST_FLOW_INTERNAL_H
 #define PORTCULLIS_HOST_FLOW_INTERNAL_H
 
+#include "box_tree.h"
 #include "flow.h"
+#include "list.h"
+#include "zone_seam.h"
 
 #include <portcullis/clip.h>
 #include <portcullis/plane.h>
@@ -30,6 +33,7 @@ enum {
     NODE_DEAD = 1u << 0,   // gave way
     NODE_QUEUED = 1u << 1,
     NODE_CLIPPED = 1u << 2, // its way was crossed with the eye well in front of it
+    NODE_MERGED = 1u << 3,
 };
 typedef struct flow_node {
     cull_plane *planes; // relative to the zone's origin
@@ -41,6 +45,11 @@ typedef struct flow_node {
     flow_rectangle rectangle;
     double key;
 } flow_node;
+
+typedef struct flow_turn { // in the queue; of those equally far who came first leaves first
+    double key;
+    uint32_t turn, node;
+} flow_turn;
 
 enum { STATE_REACHED = 1u << 0, STATE_ROOT = 1u << 1, STATE_MERGED = 1u << 2 };
 typedef struct flow_state { // of a zone
@@ -69,9 +78,15 @@ struct flow {
 
     // Constant after open.
     view_place *places;   // by zone
-    double *sticking_out; // by zone: metres that its portals reach out of its hulls
+    zone_seam *seams;     // by zone
     flow_gate *gates;     // by portal
+    box_tree *trees;      // of zones with many portals, over their portals' boxes, relative to nothing: world
+    uint32_t *tree_of;    // by zone: in trees, or SCENE_NONE
+    uint32_t tree_count;
+    double most_bend;     // metres, of all portals
+    list lent;            // CULL_MAX_PLANES for a crosser to write
     double most_start_m; // of all zones: metres beyond the near plane's corner at which the eye is still taken as in it
+    uint32_t first_stray; // the least zone that is one; zone_count: none
     uint32_t node_capacity, pool_capacity, plane_capacity, polygon_capacity;
 
     // Of the run.
@@ -86,7 +101,9 @@ struct flow {
     cull_plane *planes;
     flow_record *records;
     flow_state *states; // by zone
-    uint32_t *queue, queue_first, queue_count;
+    flow_turn *queue;        // a heap, the nearest on top
+    uint32_t *queue_places;  // by node: where it stands in it
+    uint32_t queue_count, queue_turns;
     uint8_t *ways; // 0, or WAY_*, by way
     cull_point *polygon[2];
     flow_zone *found, *sorted; // in the order reached; near to far
@@ -107,13 +124,33 @@ static inline flow_node *merged_node(const flow *f, uint32_t zone)
     return &f->nodes[f->scene->zone_count + zone];
 }
 
+// ---- flow_queue.c ----
+// Nodes leave near to far, so a node has its least key when it leaves, and zones behind get theirs from it.
+void flow_queue(flow *f, flow_node *n);                // in it already: nothing
+void flow_nearer(flow *f, flow_node *n, double key);   // reached again, maybe by a nearer way
+flow_node *flow_queue_pop(flow *f);                    // the nearest
+
+// ---- flow_ports.c ----
+result flow_ports_open(flow *f);
+void flow_ports_close(flow *f);
+typedef struct flow_port_walk {
+    const flow *f;
+    const flow_node *from;
+    const box_tree *tree;
+    cull_cut cuts[CULL_MAX_PLANES]; // the node's planes for points relative to the eye
+    uint32_t stack[40], depth, at, end;
+} flow_port_walk;
+// The zone's portals that a volume may get through, by place in the zone's list; of few portals all of them.
+void flow_ports_start(const flow *f, const flow_node *from, flow_port_walk *out);
+int flow_ports_next(flow_port_walk *w, uint32_t *out);
+
 // ---- flow.c ----
-void flow_queue(flow *f, flow_node *n);
 flow_state *flow_reach(flow *f, uint32_t zone, double key); // the view in it, when it is new
 typedef struct flow_arrival { uint32_t zone, way, parent; double key; } flow_arrival;
 void flow_root_add(flow *f, const flow_arrival *a); // the whole frustum: all else in the zone gives way
 
 // ---- flow_cross.c ----
+double flow_gate_distance(const double low[3], const double high[3], const double eye[3]);
 void flow_leave(flow *f, const flow_request *q, flow_node *n); // through all portals of its zone
 // Metres within which the eye counts as on the portal's plane, for who leaves the zone (DESIGN.md, rule 3).
 double flow_near_m(const flow *f, uint32_t zone, uint32_t portal);
@@ -124,7 +161,7 @@ int flow_touches(const flow *f, const flow_node *n, uint32_t way); // of the pol
 cull_guard flow_guard(const flow *f, uint32_t zone);
 flow_record flow_record_of(const flow *f, cull_plane plane, uint32_t zone);
 cull_plane flow_plane_in(const flow *f, const flow_record *r, uint32_t zone);
-int flow_plane_is_idle(cull_plane plane, const cull_box *box); // the whole box is inside
+cull_cut flow_cut_at_eye(const flow *f, cull_plane plane, uint32_t zone); // the plane for points relative to the eye
 flow_polygon flow_clip(const flow *f, uint32_t portal, const flow_node *n);
 flow_rectangle flow_rectangle_of(const flow *f, const flow_polygon *p);
 // All that is seen of the zone through the polygon, in a volume of those planes, is in the other volume too.

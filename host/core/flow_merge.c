@@ -44,7 +44,7 @@ typedef struct side { const double *axis; double sign, tangent; } side;
 static void plane_add(const flow *f, flow_node *n, const cull_guard *guard, const double normal[3], double distance)
 {
     const cull_plane plane = cull_guard_plane(guard, normal, distance);
-    if (flow_plane_is_idle(plane, &f->places[n->zone].box)) return;
+    if (view_plane_height(&plane, &f->places[n->zone].box) >= 0) return; // the whole box is inside
     n->records[n->plane_count] = flow_record_of(f, plane, n->zone);
     n->planes[n->plane_count++] = plane;
 }
@@ -86,6 +86,7 @@ void flow_merge_add(flow *f, uint32_t zone, const flow_rectangle *r, double key)
     flow_rectangle wanted = *r;
     f->result.portal_merges++;
     if (s->flags & STATE_MERGED) {
+        flow_nearer(f, n, key);
         if (is_around(&n->rectangle, r)) return;
         rectangle_grow(&wanted, &n->rectangle);
         s->growths++;
@@ -95,13 +96,14 @@ void flow_merge_add(flow *f, uint32_t zone, const flow_rectangle *r, double key)
     }
     rectangle_coarsen(&wanted);
     if (is_whole(&wanted) || s->growths > FLOW_GROWTHS) {
-        flow_root_add(f, &(flow_arrival){zone, SCENE_NONE, SCENE_NONE, key});
+        flow_root_add(f, &(flow_arrival){zone, SCENE_NONE, SCENE_NONE, s->key});
+        root_node(f, zone)->flags |= NODE_MERGED;
         return;
     }
     const uint32_t queued = s->flags & STATE_MERGED ? n->flags & NODE_QUEUED : 0;
     const size_t first = ((size_t)f->scene->zone_count + zone) * FLOW_ROOT_SIDES;
     *n = (flow_node){.planes = f->planes + first, .records = f->records + first, .zone = zone, .way = SCENE_NONE, .parent = SCENE_NONE,
-                     .source = f->source_count++, .flags = queued, .rectangle = wanted, .key = s->key};
+                     .source = f->source_count++, .flags = queued | NODE_MERGED, .rectangle = wanted, .key = s->key};
     planes_make(f, n);
     s->flags |= STATE_MERGED;
     s->count = 1;

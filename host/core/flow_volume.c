@@ -61,20 +61,9 @@ cull_plane flow_plane_in(const flow *f, const flow_record *r, uint32_t zone)
     return cull_guard_plane(&guard, f->side_normals[side], f->side_distances[side]);
 }
 
-int flow_plane_is_idle(cull_plane plane, const cull_box *box)
-{
-    const double n[3] = {(double)plane.normal.x, (double)plane.normal.y, (double)plane.normal.z};
-    const double low[3] = {(double)box->min.x, (double)box->min.y, (double)box->min.z};
-    const double high[3] = {(double)box->max.x, (double)box->max.y, (double)box->max.z};
-    double height = (double)plane.offset;
-    for (int i = 0; i < 3; i++) height += n[i] * (n[i] >= 0 ? low[i] : high[i]);
-    return height >= 0;
-}
-
 // ---- Polygons ----
 
-// The plane for points relative to the eye.
-static cull_cut cut_at_eye(const flow *f, cull_plane plane, uint32_t zone)
+cull_cut flow_cut_at_eye(const flow *f, cull_plane plane, uint32_t zone)
 {
     cull_cut cut = {(double)plane.normal.x, (double)plane.normal.y, (double)plane.normal.z, (double)plane.offset};
     const double *eye = f->base.camera->eye, *origin = f->places[zone].origin;
@@ -100,7 +89,7 @@ flow_polygon flow_clip(const flow *f, uint32_t portal, const flow_node *n)
         in[i] = (cull_point){at[0] - eye[0], at[1] - eye[1], at[2] - eye[2]};
     }
     for (uint32_t i = 0; i < n->plane_count && polygon.count > 0; i++) {
-        const cull_cut cut = cut_at_eye(f, n->planes[i], n->zone);
+        const cull_cut cut = flow_cut_at_eye(f, n->planes[i], n->zone);
         const uint32_t inside = count_inside(&polygon, cut);
         if (inside == polygon.count) continue;
         if (inside == 0) return (flow_polygon){in, 0};
@@ -172,7 +161,7 @@ int flow_is_inside(const flow *f, const flow_candidate *c, const flow_node *othe
 {
     for (uint32_t i = 0; i < other->plane_count; i++) {
         if (has_record(c, &other->records[i])) continue;
-        const cull_cut cut = cut_at_eye(f, other->planes[i], other->zone);
+        const cull_cut cut = flow_cut_at_eye(f, other->planes[i], other->zone);
         if (!polygon_is_inside(f, c->polygon, cut, cut.offset < 0 && c->way == other->way)) return 0;
     }
     return 1;

@@ -3,16 +3,13 @@
 // Invariant: a tree's nodes stand depth first, and each knows the node behind its last descendant: a walk needs no stack.
 // Trees halve their leaves by count, so that equal centres cost no more than others.
 #include "graph.h"
+#include "zone_seam.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-// As items are listed: rounding to the scene's step moved a corner by less than 0.9 of one, and a box that a hull holds
-// is to stay in it when both were rounded.
-#define TOUCH_STEPS 1.0
-#define HOLD_STEPS 2.0
 // Of a hull's size and of its distance from the origin: its bounds are cut out of its planes, good to a tenth of these.
 #define BOUNDS_ERROR_SIZE 1e-8
 #define BOUNDS_ERROR_PLACE 1e-14
@@ -41,11 +38,13 @@ struct graph {
     tree zones;
     uint32_t *everywhere; // zones, ascending
     uint8_t *is_parent;   // by zone
+    zone_seam *seams;     // by zone; touch and hold: what comes on top of a probe's
     uint32_t everywhere_count;
     arena memory;
 };
 
-// A point or box to look up. What is within `touch` outside a hull touches it; what is deeper than `hold` is held by it.
+// A point or box to look up. What is within `touch` outside a hull touches it; what is deeper than `hold` is held by it:
+// both more by what the zone's portals lie off its hulls.
 typedef struct probe {
     double min[3], max[3], touch, hold; // metres
 } probe;
@@ -134,11 +133,11 @@ static leaf leaf_make(const double min[3], const double max[3], uint32_t item)
     return l;
 }
 
-static void leaf_widen(leaf *l)
+static void leaf_widen(leaf *l, double by)
 {
     for (int k = 0; k < 3; k++) {
         const double size = l->max[k] - l->min[k], farthest = fmax(fabs(l->min[k]), fabs(l->max[k]));
-        const double error = BOUNDS_ERROR_SIZE * size + BOUNDS_ERROR_PLACE * farthest;
+        const double error = by + BOUNDS_ERROR_SIZE * size + BOUNDS_ERROR_PLACE * farthest;
         l->min[k] -= error;
         l->max[k] += error;
     }
@@ -160,7 +159,7 @@ static void trees_build(graph *g, leaf *leaves)
         for (uint32_t i = 0; i < zone->hull_count; i++) {
             const scene_hull *h = &s->hulls[zone->first_hull + i];
             leaves[i] = leaf_make(h->min, h->max, zone->first_hull + i);
-            leaf_widen(&leaves[i]);
+            leaf_widen(&leaves[i], g->seams[z].touch);
         }
         g->hulls[z].count = 2 * zone->hull_count - 1;
         tree_build(g->nodes + used, leaves, zone->hull_count);
@@ -184,7 +183,17 @@ static int graph_reserve(graph *g)
     g->hulls = arena_push(&g->memory, s->zone_count, sizeof *g->hulls);
     g->everywhere = arena_push(&g->memory, s->zone_count, sizeof *g->everywhere);
     g->is_parent = arena_push(&g->memory, s->zone_count, sizeof *g->is_parent);
-    return g->nodes && g->hulls && g->everywhere && g->is_parent;
+    g->seams = arena_push(&g->memory, s->zone_count, sizeof *g->seams);
+    return g->nodes && g->hulls && g->everywhere && g->is_parent && g->seams;
+}
+
+static void seams_note(graph *g)
+{
+    zone_seams_find(g->scene, g->seams);
+    for (uint32_t z = 0; z < g->scene->zone_count; z++) {
+        g->seams[z].touch -= seam_touch_least_m(g->scene);
+        g->seams[z].hold -= seam_hold_least_m(g->scene);
+    }
 }
 
 static void zones_note(graph *g)
@@ -211,6 +220,7 @@ result graph_open(const scene *s, const allocator *memory, graph **out)
         return RESULT_NO_MEMORY;
     }
     zones_note(g);
+    seams_note(g);
     trees_build(g, leaves);
     memory_free(memory, leaves, leaf_count, sizeof *leaves);
     *out = g;
@@ -277,20 +287,24 @@ static double height_high(const scene_solid_plane *plane, const probe *q)
            n[2] * (n[2] > 0 ? q->max[2] : q->min[2]) - plane->distance;
 }
 
-static int hull_touches(const scene *s, uint32_t hull, const probe *q)
+static int hull_touches(const graph *g, uint32_t hull, const probe *q)
 {
+    const scene *s = g->scene;
     const scene_hull *h = &s->hulls[hull];
+    const double touch = q->touch + g->seams[h->zone].touch;
     for (uint32_t i = 0; i < h->plane_count; i++) {
-        if (height_low(&s->hull_planes[h->first_plane + i], q) > q->touch) return 0;
+        if (height_low(&s->hull_planes[h->first_plane + i], q) > touch) return 0;
     }
     return 1;
 }
 
-static int hull_holds(const scene *s, uint32_t hull, const probe *q)
+static int hull_holds(const graph *g, uint32_t hull, const probe *q)
 {
+    const scene *s = g->scene;
     const scene_hull *h = &s->hulls[hull];
+    const double hold = q->hold + g->seams[h->zone].hold;
     for (uint32_t i = 0; i < h->plane_count; i++) {
-        if (!(height_high(&s->hull_planes[h->first_plane + i], q) < -q->hold)) return 0;
+        if (!(height_high(&s->hull_planes[h->first_plane + i], q) < -hold)) return 0;
     }
     return 1;
 }
@@ -304,7 +318,7 @@ static int zone_touches(const graph *g, uint32_t zone, const probe *q)
             i = n->after;
             continue;
         }
-        if (n->item != SCENE_NONE && hull_touches(g->scene, n->item, q)) return 1;
+        if (n->item != SCENE_NONE && hull_touches(g, n->item, q)) return 1;
         i++;
     }
     return 0;
@@ -319,7 +333,7 @@ static int zone_holds(const graph *g, uint32_t zone, const probe *q)
             i = n->after;
             continue;
         }
-        if (n->item != SCENE_NONE && hull_holds(g->scene, n->item, q)) return 1;
+        if (n->item != SCENE_NONE && hull_holds(g, n->item, q)) return 1;
         i++;
     }
     return 0;
@@ -403,15 +417,20 @@ static void zones_find(const graph *g, const probe *q, zone_list *l)
     zone_list_sort(l);
 }
 
+static int is_box(const double min[3], const double max[3]) // not of NaN, not turned inside out
+{
+    return min[0] <= max[0] && min[1] <= max[1] && min[2] <= max[2];
+}
+
 static probe probe_of_box(const graph *g, const double min[3], const double max[3])
 {
-    const double step = g->scene->step;
-    return (probe){{min[0], min[1], min[2]}, {max[0], max[1], max[2]}, TOUCH_STEPS * step, HOLD_STEPS * step};
+    return (probe){{min[0], min[1], min[2]}, {max[0], max[1], max[2]}, seam_touch_least_m(g->scene), seam_hold_least_m(g->scene)};
 }
 
 uint32_t graph_zones_at(const graph *g, const double p[3], double distance, uint32_t *zones, uint32_t capacity)
 {
     const probe q = {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}, distance, distance};
+    if (!is_box(p, p)) return 0;
     zone_list l = {zones, capacity, UINT32_MAX, 0};
     zones_find(g, &q, &l);
     return l.count;
@@ -420,6 +439,7 @@ uint32_t graph_zones_at(const graph *g, const double p[3], double distance, uint
 uint32_t graph_zones_of_box(const graph *g, const double min[3], const double max[3], uint32_t *zones, uint32_t capacity)
 {
     const probe q = probe_of_box(g, min, max);
+    if (!is_box(min, max)) return 0;
     zone_list l = {zones, capacity, UINT32_MAX, 0};
     zones_find(g, &q, &l);
     return l.count;

@@ -149,3 +149,32 @@ const char *hull_fault(const scene_solid_plane *planes, uint32_t plane_count, do
     }
     return m.volume > VOLUME_LEAST * diagonal * diagonal * diagonal ? NULL : "has an empty hull; its planes leave nothing between them";
 }
+
+double hull_height(const scene_solid_plane *planes, uint32_t plane_count, const double p[3])
+{
+    double most = -INFINITY;
+    for (uint32_t i = 0; i < plane_count; ++i) {
+        const double height = dot(planes[i].normal, p) - planes[i].distance;
+        most = height > most ? height : most;
+    }
+    return most;
+}
+
+int hull_has_some(const scene_solid_plane *planes, uint32_t plane_count, const hull_polygon *q)
+{
+    enum { ROOM = 2 * HULL_CUTS_MOST };
+    cull_point first[ROOM], second[ROOM], *in = first, *out = second;
+    uint32_t count = q->point_count < ROOM ? q->point_count : ROOM;
+    double base[3];
+    for (int k = 0; k < 3; ++k) base[k] = q->points[0][k] + q->shift[k];
+    for (uint32_t i = 0; i < count; ++i) in[i] = (cull_point){q->points[i][0] - q->points[0][0], q->points[i][1] - q->points[0][1], q->points[i][2] - q->points[0][2]};
+    for (uint32_t p = 0; p < plane_count && count; ++p) {
+        const double *n = planes[p].normal;
+        const cull_cut cut = {-n[0], -n[1], -n[2], planes[p].distance - dot(n, base) - q->depth};
+        count = cull_polygon_clip(in, count, cut, out, ROOM);
+        cull_point *swap = in;
+        in = out;
+        out = swap;
+    }
+    return count > 0;
+}

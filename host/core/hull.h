@@ -10,5 +10,10 @@ enum { HULL_CUTS_MOST = 512 }; // planes that hull_fault takes
 // The box of the body's corners, to a billionth of its size and the rounding of the planes. NULL, or what is wrong: a
 // constant text that goes on after "the zone ".
 const char *hull_fault(const scene_solid_plane *planes, uint32_t plane_count, double min[3], double max[3]);
+// Largest of normal . p - distance: below 0 inside. Of no planes: -INFINITY.
+double hull_height(const scene_solid_plane *planes, uint32_t plane_count, const double p[3]);
+// Whether some point of the convex polygon, moved by `shift`, lies `depth` or deeper in the body.
+typedef struct hull_polygon { const double (*points)[3]; uint32_t point_count; double shift[3], depth; } hull_polygon;
+int hull_has_some(const scene_solid_plane *planes, uint32_t plane_count, const hull_polygon *q);
 
 #endif

@@ -18,6 +18,8 @@ typedef struct library {
     const char *path;
 } library;
 
+typedef struct file_id { dev_t device; ino_t number; } file_id; // one file has one, whatever its paths
+
 struct loader {
     const allocator *memory;
     arena texts;
@@ -25,6 +27,7 @@ struct loader {
     buffer plugins;        // loaded_plugin
     buffer refused;        // refused_plugin
     buffer libraries;      // library
+    buffer looked_at;      // file_id
 };
 
 static result add_text(loader *l, buffer *to, const char *text)
@@ -61,6 +64,7 @@ result loader_open(const loader_options *o, const allocator *memory, report *r, 
     l->plugins = buffer_make(memory, sizeof(loaded_plugin));
     l->refused = buffer_make(memory, sizeof(refused_plugin));
     l->libraries = buffer_make(memory, sizeof(library));
+    l->looked_at = buffer_make(memory, sizeof(file_id));
     uint32_t count;
     const cull_plugin *const *builtin = builtin_plugins(&count);
     int failed = add_places(l, o) != RESULT_OK;
@@ -87,7 +91,7 @@ void loader_close(loader *l)
     if (!l) return;
     const library *libraries = l->libraries.items;
     for (size_t i = 0; i < l->libraries.count; ++i) library_close(libraries[i].handle);
-    buffer *const all[] = {&l->files, &l->folders, &l->plugins, &l->refused, &l->libraries};
+    buffer *const all[] = {&l->files, &l->folders, &l->plugins, &l->refused, &l->libraries, &l->looked_at};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) buffer_free(all[i]);
     arena_free(&l->texts);
     memory_free(l->memory, l, 1, sizeof *l);
@@ -168,6 +172,15 @@ static int library_seen(const loader *l, const char *path)
     return 0;
 }
 
+// By another path too: a folder twice on the search path, a link. What cannot be asked about is nothing known.
+static int file_seen(const loader *l, const struct stat *status)
+{
+    const file_id *seen = l->looked_at.items;
+    for (size_t i = 0; i < l->looked_at.count; ++i)
+        if (seen[i].device == status->st_dev && seen[i].number == status->st_ino) return 1;
+    return 0;
+}
+
 static result library_keep(loader *l, void *handle, const char *path, const cull_entry_v0 *entry)
 {
     const library kept = {handle, arena_text(&l->texts, path, strlen(path))};
@@ -183,7 +196,12 @@ static result library_keep(loader *l, void *handle, const char *path, const cull
 // Opens one file unless it was looked at before. Bad ones are refused, not failed.
 static result library_open(loader *l, const char *path)
 {
+    struct stat status;
     if (library_seen(l, path)) return RESULT_OK;
+    if (stat(path, &status) == 0) {
+        if (file_seen(l, &status)) return RESULT_OK;
+        if (!buffer_append(&l->looked_at, &(file_id){status.st_dev, status.st_ino}, 1)) return RESULT_NO_MEMORY;
+    }
     dlerror();
     void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (!handle) {

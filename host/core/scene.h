@@ -118,6 +118,15 @@ typedef struct scene_solid { // convex body: inside where normal . p <= distance
 } scene_solid;
 typedef struct scene_solid_plane { double normal[3], distance; } scene_solid_plane;
 
+// A culler's index of one zone, kept in a scene file: lent at build where all of its key agrees, see bake.h.
+typedef struct scene_bake {
+    const char *id, *version; // of the culler's descriptor
+    uint64_t options_hash, zone_hash;
+    const void *bytes;        // 64-byte aligned
+    uint64_t size;
+    uint32_t zone;
+} scene_bake;
+
 typedef struct scene_extent {
     double origin[3]; // a multiple of 1 m
     cull_box box;     // of everything, movers too, relative to the origin
@@ -142,6 +151,8 @@ typedef struct scene {
     cull_wall *walls;           // item_count; NULL without walls
     uint32_t *wall_vertices;
     cull_plane *planes;
+    cull_exact_plane *exact_planes;  // plane_count, in grid steps from the scene's origin; NULL: not compiled
+    double grid_steps_per_metre;     // of exact_planes; 0 without them
     scene_material *materials;
     scene_object *objects;
     scene_mover *movers;
@@ -165,6 +176,11 @@ typedef struct scene {
     uint32_t zone_count, hull_count, hull_plane_count, zone_item_count, portal_count, portal_point_count;
     uint32_t door_count, key_count, light_count, path_count, camera_count;
     uint32_t stray_items;            // that no zone touched
+
+    scene_bake *bakes;
+    uint32_t bake_count;
+    void *file;                      // of a scene file: the arrays lie in it; else NULL
+    size_t file_bytes;
 
     uint32_t position_count, index_count, polygon_count, item_count, mover_count;
     uint32_t wall_vertex_count, plane_count, material_count, object_count, place_count;
@@ -199,6 +215,7 @@ typedef struct builder_item {
     uint32_t index_count, polygon_count, loop_count;
     uint32_t material, object, flags;  // CULL_ITEM_*; SEE_THROUGH, CUT_OUT, TWO_SIDED follow from the material too
     double plane[4];                   // walls: unit normal, offset: inside dot + offset >= 0
+    const cull_exact_plane *exact;     // walls: the same exactly, in steps of scene_builder_grid from the world's origin; NULL: none
 } builder_item;
 
 // [one thread] Functions below report nothing themselves but for out-of-memory in the result.
@@ -213,6 +230,9 @@ result scene_builder_mover(scene_builder *b, const char *name, const double open
 result scene_builder_place(scene_builder *b, const scene_place *place);
 result scene_builder_solid(scene_builder *b, solid_kind kind, const scene_solid_plane *planes, uint32_t plane_count,
                            const double min[3], const double max[3]);
+// Steps a metre of the items' exact planes: a whole number above 0. Walls then share a plane where these are equal, number
+// for number. The scene gets them where every wall has one, no transform is on and all fit 63 bits about its origin.
+void scene_builder_grid(scene_builder *b, double steps_per_metre);
 // From now on everything goes through this: world = matrix * p (rows of 3 x 4, a turn, one scale above 0, and a move).
 typedef struct builder_transform { double rows[3][4]; } builder_transform;
 result scene_builder_transform(scene_builder *b, const builder_transform *t); // BAD_INPUT: not such a matrix
@@ -237,13 +257,27 @@ typedef struct builder_path { const scene_key *keys; const double *pivot; uint32
 result scene_builder_zone(scene_builder *b, const builder_zone *z, uint32_t *out, const char **fault);
 result scene_builder_portal(scene_builder *b, const builder_portal *p, uint32_t *out, const char **fault);
 // mover: the last mover added so far is `scene_builder_mover_count() - 1`; SCENE_NONE: none.
+// BAD_INPUT: no such mover, it has a door, or shut or open it lies beyond 1e9 m.
 result scene_builder_door(scene_builder *b, const char *name, door_state at_rest, uint32_t mover, uint32_t *out);
 uint32_t scene_builder_mover_count(const scene_builder *b);
-result scene_builder_mover_path(scene_builder *b, uint32_t mover, const builder_path *p); // BAD_INPUT: times don't rise, not finite
+// BAD_INPUT: times don't rise, not finite, leads beyond 1e9 m.
+result scene_builder_mover_path(scene_builder *b, uint32_t mover, const builder_path *p);
 result scene_builder_light(scene_builder *b, const scene_light *l);
 result scene_builder_camera_path(scene_builder *b, const char *name, const camera *cameras, uint32_t count);
 
 void scene_builder_map(scene_builder *b); // the scene is a map: auto views start at its places
+// ---- Copies and measures ----
+// All that `from` collected once more, through b's transform. from: no transform, zones, portals, paths or lights of its own.
+// BAD_INPUT: it has, or goes beyond what a scene holds; then b is only good to be closed.
+result scene_builder_append(scene_builder *b, const scene_builder *from);
+uint64_t scene_builder_size(const scene_builder *b); // the most of: triangles, vertices, objects, solids' planes, places
+uint32_t scene_builder_item_count(const scene_builder *b); // movers too
+typedef struct builder_bounds { double low[3], high[3]; size_t vertices_seen, portal_points_seen; } builder_bounds;
+builder_bounds builder_bounds_none(void);
+void builder_bounds_more(const scene_builder *b, builder_bounds *bounds); // takes in what came since the last time
+// Metres that the point, through b's transform, lies outside of the zone's hulls; 0: inside, or the zone is everywhere.
+double scene_builder_outside(const scene_builder *b, uint32_t zone, const double p[3]);
+
 // Origin, rounding, boxes, hash. Refuses (with a line) a scene without polygons, too wide for 1 mm in float, or over
 // 2^32 of anything.
 result scene_builder_finish(scene_builder *b, const char *path, report *r, scene **out);

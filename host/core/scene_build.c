@@ -39,6 +39,7 @@ result scene_builder_open(const allocator *memory, scene_builder **out)
     stream_open(&b->movers, memory);
     b->walls = buffer_make(memory, sizeof(builder_wall));
     b->wall_vertices = buffer_make(memory, sizeof(uint32_t));
+    b->exact_planes = buffer_make(memory, sizeof(cull_exact_plane));
     b->materials = buffer_make(memory, sizeof(scene_material));
     b->material_slots = buffer_make(memory, sizeof(uint32_t));
     b->objects = buffer_make(memory, sizeof(scene_object));
@@ -69,7 +70,7 @@ void scene_builder_close(scene_builder *b)
     buffer *const all[] = {&b->positions,  &b->normals,        &b->texcoords,  &b->vertex_materials, &b->walls,  &b->wall_vertices, &b->materials,
                            &b->material_slots, &b->objects, &b->mover_list, &b->places, &b->solids, &b->solid_planes, &b->zones,
                            &b->zone_slots, &b->hulls, &b->hull_planes, &b->gates, &b->gate_points, &b->doors, &b->keys, &b->lights,
-                           &b->paths, &b->cameras};
+                           &b->paths, &b->cameras, &b->exact_planes};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) buffer_free(all[i]);
     arena_free(&b->names);
     memory_free(b->memory, b, 1, sizeof *b);
@@ -214,6 +215,26 @@ static result stream_item(scene_builder *b, builder_stream *s, const builder_ite
     return RESULT_OK;
 }
 
+void scene_builder_grid(scene_builder *b, double steps_per_metre)
+{
+    b->grid_steps_per_metre = steps_per_metre;
+}
+
+// One plane an item, so items that came before the grid have none.
+static result keep_exact(scene_builder *b, const builder_item *item, uint32_t loop_count)
+{
+    const int is_exact = loop_count && b->grid_steps_per_metre > 0 && item->exact && !b->map.is_on;
+    const cull_exact_plane none = {{0, 0, 0}, 0};
+    b->inexact_walls += loop_count && !is_exact;
+    if (!(b->grid_steps_per_metre > 0) || b->inexact_walls) return RESULT_OK;
+    const size_t missing = b->walls.count - b->exact_planes.count; // this one is in `walls` already
+    cull_exact_plane *planes = buffer_push(&b->exact_planes, missing);
+    if (!planes) return RESULT_NO_MEMORY;
+    for (size_t i = 0; i < missing; ++i) planes[i] = none;
+    if (is_exact) planes[missing - 1] = *item->exact;
+    return RESULT_OK;
+}
+
 result scene_builder_item(scene_builder *b, const builder_item *item)
 {
     const scene_solid_plane plane = builder_plane(b, &(scene_solid_plane){{item->plane[0], item->plane[1], item->plane[2]}, -item->plane[3]});
@@ -227,6 +248,7 @@ result scene_builder_item(scene_builder *b, const builder_item *item)
     memcpy(wall->plane, plane.normal, sizeof plane.normal);
     wall->plane[3] = -plane.distance;
     b->wall_count += loop_count != 0;
+    if (keep_exact(b, item, loop_count) != RESULT_OK) return RESULT_NO_MEMORY;
     return loop_count && !buffer_append(&b->wall_vertices, item->loop, loop_count) ? RESULT_NO_MEMORY : RESULT_OK;
 }
 

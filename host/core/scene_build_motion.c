@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+static const double COORDINATE_MOST = 1e9; // metres: as for all coordinates of a scene
+
 uint32_t scene_builder_mover_count(const scene_builder *b)
 {
     return (uint32_t)b->mover_list.count;
@@ -17,10 +19,69 @@ static int are_finite(const double *v, int count)
     return finite;
 }
 
+// ---- How far a mover gets ----
+
+typedef struct mover_reach { double low[3], high[3], radius; } mover_reach; // at rest, world; radius: about its pivot
+
+static mover_reach reach_of(const scene_builder *b, uint32_t mover, const double pivot[3])
+{
+    const scene_item *item = (const scene_item *)b->movers.items.items + mover;
+    const uint32_t *indices = (const uint32_t *)b->movers.indices.items + item->first_index;
+    const double(*positions)[3] = b->positions.items;
+    mover_reach r = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
+    double square = 0;
+    for (uint32_t i = 0; i < item->index_count; ++i) {
+        const double *p = positions[indices[i]], d[3] = {p[0] - pivot[0], p[1] - pivot[1], p[2] - pivot[2]};
+        square = fmax(square, d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        for (int k = 0; k < 3; ++k) {
+            r.low[k] = fmin(r.low[k], p[k]);
+            r.high[k] = fmax(r.high[k], p[k]);
+        }
+    }
+    r.radius = sqrt(square);
+    return r;
+}
+
+static int stays_near(const mover_reach *r, const double offset[3])
+{
+    int near = 1;
+    for (int k = 0; k < 3; ++k) near &= r->low[k] + offset[k] >= -COORDINATE_MOST && r->high[k] + offset[k] <= COORDINATE_MOST;
+    return near;
+}
+
+// Between keys it is between their places. One that turns may get anywhere in the ball about its pivot.
+static int path_stays_near(const scene_builder *b, uint32_t mover, const scene_key *keys, uint32_t count)
+{
+    const double *pivot = ((const scene_mover *)b->mover_list.items)[mover].pivot;
+    mover_reach r = reach_of(b, mover, pivot);
+    int turns = 0, near = 1;
+    for (uint32_t i = 0; i < count; ++i) turns |= keys[i].turn_deg[0] != 0 || keys[i].turn_deg[1] != 0 || keys[i].turn_deg[2] != 0;
+    for (int k = 0; turns && k < 3; ++k) {
+        r.low[k] = pivot[k] - r.radius;
+        r.high[k] = pivot[k] + r.radius;
+    }
+    for (uint32_t i = 0; i < count; ++i) near &= stays_near(&r, keys[i].offset);
+    return near;
+}
+
+// Its leaf stands as the door does at rest; its other place is that far from there.
+static int leaf_stays_near(const scene_builder *b, uint32_t mover, door_state at_rest)
+{
+    const scene_mover *m = (const scene_mover *)b->mover_list.items + mover;
+    const double none[3] = {0, 0, 0};
+    const mover_reach r = reach_of(b, mover, none);
+    double offset[3];
+    for (int k = 0; k < 3; ++k) offset[k] = at_rest == DOORS_OPEN ? -m->open_offset[k] : m->open_offset[k];
+    return stays_near(&r, none) && stays_near(&r, offset);
+}
+
+// ---- Doors and paths ----
+
 result scene_builder_door(scene_builder *b, const char *name, door_state at_rest, uint32_t mover, uint32_t *out)
 {
     scene_mover *movers = b->mover_list.items;
     if (mover != SCENE_NONE && (mover >= b->mover_list.count || movers[mover].door != SCENE_NONE)) return RESULT_BAD_INPUT;
+    if (mover != SCENE_NONE && !leaf_stays_near(b, mover, at_rest)) return RESULT_BAD_INPUT;
     scene_door door = {.at_rest = at_rest, .mover = mover};
     door.name = arena_text(&b->names, name, strlen(name));
     if (!door.name || !buffer_append(&b->doors, &door, 1)) return RESULT_NO_MEMORY;
@@ -50,15 +111,15 @@ result scene_builder_mover_path(scene_builder *b, uint32_t mover, const builder_
     for (uint32_t i = 0; i < p->key_count; ++i) {
         keys[i] = p->keys[i];
         builder_offset(b, p->keys[i].offset, keys[i].offset);
-        if (!are_finite(keys[i].offset, 3)) {
-            b->keys.count = first;
-            return RESULT_BAD_INPUT;
-        }
+    }
+    if (p->pivot) builder_point(b, p->pivot, m->pivot);
+    if (!path_stays_near(b, mover, keys, p->key_count)) {
+        b->keys.count = first;
+        return RESULT_BAD_INPUT;
     }
     m->first_key = first;
     m->key_count = p->key_count;
     m->loops = p->loops != 0;
-    if (p->pivot) builder_point(b, p->pivot, m->pivot);
     if (b->map.is_on) memcpy(m->axes, b->map.turn, sizeof m->axes);
     return RESULT_OK;
 }

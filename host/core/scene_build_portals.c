@@ -1,13 +1,17 @@
 // Scene builder, portals: flat, convex, between two zones that it touches, turned counterclockwise for the first of them.
 // SPDX-License-Identifier: MIT
+#include "hull.h"
 #include "scene_builder.h"
+#include "zone_seam.h"
 
 #include <math.h>
 #include <string.h>
 
-static const double FLAT_MOST = 1e-3;         // metres: what a person's rounded numbers may be off; below a pixel at 1 m
-static const double CONVEX_MOST = 1e-3;       // metres: the same, of a corner that is almost straight
-static const double OUTSIDE_MOST = 1.0 / 64;  // metres: of a zone's hull, so that hulls need not meet to the last bit
+// All lengths are shares of a portal's size, or of its zones' where those are so large that float leaves them coarser steps:
+// the same scene is taken at any scale.
+static const double FLAT_MOST = 1e-3;  // of the distance from the middle to the farthest point: what rounded numbers may be off
+static const double CONVEX_MOST = 2e-3; // of it: the same, of a corner that is almost straight, seen from the next but one
+static const double FLAT_ROUNDED = 1.0 / 16777216; // of the zones' size: a step of float
 static const double AREA_LEAST = 1e-9;        // of the square of the portal's size: thinner is a line
 static const double PROBE = 1.0 / 64;         // of the portal's size: how far in front of it its sides are looked at
 static const double SIDE_LEAST = 1.0 / 4;     // of the probe: heights that differ less name no side
@@ -19,6 +23,7 @@ typedef struct gate {
     double (*points)[3];
     uint32_t count;
     double middle[3], normal[3], size; // size: the farthest point from the middle
+    double zones_size;                 // the longest side of the bounds of both zones' hulls
 } gate;
 
 static double dot(const double a[3], const double b[3])
@@ -40,22 +45,27 @@ static void cross(const double a[3], const double b[3], double out[3])
 
 // ---- Shape ----
 
-// Newell's normal, from the first point, so that a portal far away is measured like one near by.
-static const char *find_plane(gate *g)
+void polygon_measure(const double (*points)[3], uint32_t count, double middle[3], double twice_area[3])
 {
-    double sum[3] = {0, 0, 0}, twice_area[3] = {0, 0, 0};
-    for (uint32_t i = 0; i < g->count; ++i) {
-        double a[3], c[3], product[3];
-        subtract(g->points[i], g->points[0], a);
-        subtract(g->points[i + 1 < g->count ? i + 1 : 0], g->points[0], c);
+    double sum[3] = {0, 0, 0};
+    memset(twice_area, 0, 3 * sizeof *twice_area);
+    for (uint32_t i = 1; i < count; ++i) {
+        double a[3], c[3] = {0, 0, 0}, product[3];
+        subtract(points[i], points[0], a);
+        if (i + 1 < count) subtract(points[i + 1], points[0], c);
         cross(a, c, product);
         for (int k = 0; k < 3; ++k) {
             sum[k] += a[k];
             twice_area[k] += product[k];
         }
     }
-    double square = 0;
-    for (int k = 0; k < 3; ++k) g->middle[k] = g->points[0][k] + sum[k] / g->count;
+    for (int k = 0; k < 3; ++k) middle[k] = points[0][k] + sum[k] / count;
+}
+
+static const char *find_plane(gate *g)
+{
+    double twice_area[3], square = 0;
+    polygon_measure((const double(*)[3])g->points, g->count, g->middle, twice_area);
     for (uint32_t i = 0; i < g->count; ++i) {
         double a[3];
         subtract(g->points[i], g->middle, a);
@@ -63,17 +73,19 @@ static const char *find_plane(gate *g)
     }
     g->size = sqrt(square);
     const double length = sqrt(dot(twice_area, twice_area));
-    if (!(length > AREA_LEAST * square)) return "has no area: its points lie on a line";
+    if (!(length > AREA_LEAST * square)) return "has no area: its points lie on a line, or its edges cross";
     for (int k = 0; k < 3; ++k) g->normal[k] = twice_area[k] / length;
     return NULL;
 }
 
 static const char *shape_fault(const gate *g)
 {
+    const double rounded = FLAT_ROUNDED * g->zones_size;
+    const double off = fmax(FLAT_MOST * g->size, rounded), dent = fmax(CONVEX_MOST * g->size, 2 * rounded);
     for (uint32_t i = 0; i < g->count; ++i) {
         double a[3];
         subtract(g->points[i], g->middle, a);
-        if (fabs(dot(a, g->normal)) > FLAT_MOST) return "is not flat: a point lies over 1 mm off the plane of the others";
+        if (fabs(dot(a, g->normal)) > off) return "is not flat: a point lies over 1/2000 of its width off the plane of the others";
     }
     for (uint32_t i = 0; i < g->count; ++i) {
         double edge[3], inward[3];
@@ -85,7 +97,7 @@ static const char *shape_fault(const gate *g)
             double a[3];
             subtract(g->points[j], g->points[i], a);
             if (j > i && dot(a, a) == 0) return "has a point twice";
-            if (dot(a, inward) < -CONVEX_MOST * length) return "is not convex";
+            if (dot(a, inward) < -dent * length) return "is not convex";
         }
     }
     return NULL;
@@ -115,6 +127,19 @@ static const scene_zone *zone_at(const gate *g, int side)
     return (const scene_zone *)g->b->zones.items + g->from->zones[side];
 }
 
+static double zones_size(const scene_builder *b, const builder_portal *p)
+{
+    const scene_zone *zones = b->zones.items;
+    const scene_hull *hulls = b->hulls.items;
+    double most = 0;
+    for (int side = 0; side < 2; ++side) {
+        const scene_zone *z = &zones[p->zones[side]];
+        for (uint32_t h = z->first_hull; h < z->first_hull + z->hull_count; ++h)
+            for (int k = 0; k < 3; ++k) most = fmax(most, hulls[h].max[k] - hulls[h].min[k]);
+    }
+    return most;
+}
+
 // Over the zone's surface, least over its hulls: below 0 inside.
 static double height(const gate *g, int side, const double p[3])
 {
@@ -122,19 +147,16 @@ static double height(const gate *g, int side, const double p[3])
     const scene_hull *hulls = g->b->hulls.items;
     const scene_solid_plane *planes = g->b->hull_planes.items;
     double least = z->hull_count ? INFINITY : -INFINITY;
-    for (uint32_t h = z->first_hull; h < z->first_hull + z->hull_count; ++h) {
-        double most = -INFINITY;
-        for (uint32_t i = hulls[h].first_plane; i < hulls[h].first_plane + hulls[h].plane_count; ++i)
-            most = fmax(most, dot(planes[i].normal, p) - planes[i].distance);
-        least = fmin(least, most);
-    }
+    for (uint32_t h = z->first_hull; h < z->first_hull + z->hull_count; ++h)
+        least = fmin(least, hull_height(planes + hulls[h].first_plane, hulls[h].plane_count, p));
     return least;
 }
 
 static int touches_zone(const gate *g, int side)
 {
+    const double most = seam_tolerance_m(g->size, g->zones_size);
     for (uint32_t i = 0; i < g->count; ++i)
-        if (height(g, side, g->points[i]) > OUTSIDE_MOST) return 0;
+        if (height(g, side, g->points[i]) > most) return 0;
     return 1;
 }
 
@@ -144,6 +166,24 @@ static int lies_in(const gate *g, int side, uint32_t outer)
     uint32_t z = g->from->zones[side];
     while (z != SCENE_NONE && z != outer) z = zones[z].parent;
     return z == outer;
+}
+
+// Behind such a portal the zone would go on and hold what is there, as if it were before it: the zone about it, which the
+// portal leads to, would not be found from there. Zones side by side both hold what lies in both.
+static int is_sunk(const gate *g, int side)
+{
+    const scene_zone *z = zone_at(g, side), *other = zone_at(g, 1 - side);
+    if (!z->hull_count || (other->hull_count && !lies_in(g, side, g->from->zones[1 - side]))) return 0;
+    const scene_hull *hulls = g->b->hulls.items;
+    const scene_solid_plane *planes = g->b->hull_planes.items;
+    const double most = seam_tolerance_m(g->size, g->zones_size), sign = side ? 1 : -1;
+    for (uint32_t h = z->first_hull; h < z->first_hull + z->hull_count; ++h)
+        for (int moved = 0; moved < 2; ++moved) { // behind it another hull of the zone may begin
+            hull_polygon q = {.points = (const double(*)[3])g->points, .point_count = g->count, .depth = moved ? most / 2 : most};
+            for (int k = 0; k < 3; ++k) q.shift[k] = moved * most * sign * g->normal[k];
+            if (hull_has_some(planes + hulls[h].first_plane, hulls[h].plane_count, &q)) return 1;
+        }
+    return 0;
 }
 
 // How much deeper in the zone the portal's front is than its back.
@@ -182,6 +222,7 @@ static void turn_round(gate *g)
             g->points[i][k] = g->points[j][k];
             g->points[j][k] = swap;
         }
+    for (int k = 0; k < 3; ++k) g->normal[k] = -g->normal[k];
 }
 
 static const char *ends_fault(const gate *g)
@@ -196,14 +237,18 @@ static const char *ends_fault(const gate *g)
 static const char *place(gate *g)
 {
     const char *fault = ends_fault(g);
-    if (!fault) fault = take_points(g);
     if (fault) return fault;
-    if (!touches_zone(g, 0)) return "has a point over 1/64 m outside of its first zone";
-    if (!touches_zone(g, 1)) return "has a point over 1/64 m outside of its second zone";
+    g->zones_size = zones_size(g->b, g->from);
+    fault = take_points(g);
+    if (fault) return fault;
+    if (!touches_zone(g, 0)) return "has a point outside of its first zone, by over 1/64 of its width";
+    if (!touches_zone(g, 1)) return "has a point outside of its second zone, by over 1/64 of its width";
     const double score = front_score(g);
     if (score == 0 && g->from->normal) return "has a normal that lies in its plane";
     if (score == 0) return "lies so that its sides cannot be told apart; give it a normal towards its first zone";
     if (score < 0) turn_round(g);
+    if (is_sunk(g, 0)) return "lies inside its first zone, by over 1/64 of its width";
+    if (is_sunk(g, 1)) return "lies inside its second zone, by over 1/64 of its width";
     return NULL;
 }
 

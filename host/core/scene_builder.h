@@ -41,6 +41,7 @@ struct scene_builder {
     builder_stream statics, movers;
     buffer walls;         // builder_wall, one a static item
     buffer wall_vertices; // uint32_t
+    buffer exact_planes;  // cull_exact_plane, one a static item once there is a grid; zeros of what is no wall
     buffer materials;     // scene_material
     buffer material_slots; // uint32_t: open addressing by name, material + 1
     buffer objects;       // scene_object
@@ -60,6 +61,8 @@ struct scene_builder {
     buffer paths;         // scene_camera_path
     buffer cameras;       // camera
     uint32_t is_map, wall_count;
+    double grid_steps_per_metre; // of exact_planes; 0: no grid
+    uint32_t inexact_walls;      // without an exact plane
     uint32_t everywhere; // the zone without hulls, or SCENE_NONE
 };
 
@@ -69,5 +72,8 @@ void builder_offset(const scene_builder *b, const double v[3], double out[3]);  
 // inside: normal . p <= distance, of any length of the normal
 scene_solid_plane builder_plane(const scene_builder *b, const scene_solid_plane *plane);
 double builder_scale(const scene_builder *b);
+// Newell's: the middle of the points and the normal, of twice the area's length. From the first point, so that a polygon
+// far away is measured like one near by.
+void polygon_measure(const double (*points)[3], uint32_t count, double middle[3], double twice_area[3]);
 
 #endif

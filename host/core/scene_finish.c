@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Invariant: every relative coordinate is a multiple of scene.step and exact in float, so no later sum of origin and
 // position depends on who computes it.
+#include "exact_plane.h"
 #include "scene_finish.h"
 
 #include <portcullis/box.h>
@@ -140,7 +141,7 @@ static float *take_floats(finish *f, size_t count)
     return floats;
 }
 
-static cull_box box_of_item(const scene *s, const scene_item *item)
+cull_box finish_item_box(const scene *s, const scene_item *item)
 {
     cull_box box = cull_box_none();
     for (uint32_t i = item->first_index; i < item->first_index + item->index_count; ++i) box = cull_box_with_point(box, s->positions[s->indices[i]]);
@@ -156,7 +157,7 @@ static void find_boxes(finish *f)
     if (f->failed) return;
     cull_box all = cull_box_none();
     for (size_t i = 0; i < count; ++i) {
-        const cull_box box = box_of_item(s, &s->items[i]);
+        const cull_box box = finish_item_box(s, &s->items[i]);
         const float values[6] = {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
         for (int k = 0; k < 6; ++k) axes[k][i] = values[k];
         all = cull_box_union(all, box);
@@ -166,7 +167,8 @@ static void find_boxes(finish *f)
     s->whole.radius = cull_box_radius(all);
 }
 
-// Plane ids: planes whose rounded numbers agree are one. Rounding only decides sharing, never a position.
+// Plane ids: planes whose rounded numbers agree are one, or whose exact ones do where there are such. Rounding only decides
+// sharing, never a position.
 typedef struct plane_key { int64_t number[4]; } plane_key;
 static const double NORMAL_STEPS = 1 << 20; // a millionth of a radian: far finer than any two walls that differ
 
@@ -174,6 +176,11 @@ static plane_key key_of_plane(const double plane[4], double offset, double step)
 {
     const double offset_steps = offset / (step * 16); // 16 vertex steps: what rounding of the vertices may move it
     return (plane_key){{llrint(plane[0] * NORMAL_STEPS), llrint(plane[1] * NORMAL_STEPS), llrint(plane[2] * NORMAL_STEPS), llrint(offset_steps)}};
+}
+
+static plane_key key_of_exact_plane(const cull_exact_plane *p)
+{
+    return (plane_key){{p->normal[0], p->normal[1], p->normal[2], p->offset}};
 }
 
 static uint32_t plane_find(finish *f, plane_key *keys, uint32_t *slots, size_t slot_count, plane_key key)
@@ -186,19 +193,43 @@ static uint32_t plane_find(finish *f, plane_key *keys, uint32_t *slots, size_t s
     return f->s->plane_count - 1;
 }
 
+// An exact plane of the world is kept about the scene's origin; without one of them none is any use.
+static void keep_exact_plane(scene *s, uint32_t plane, const cull_exact_plane *from)
+{
+    if (s->exact_planes && !exact_plane_move(from, s->whole.origin, s->grid_steps_per_metre, &s->exact_planes[plane])) s->exact_planes = NULL;
+}
+
 static void number_planes(finish *f, plane_key *keys, uint32_t *slots, size_t slot_count)
 {
     scene *s = f->s;
     const builder_wall *from = f->b->walls.items;
+    const cull_exact_plane *exact = s->exact_planes ? f->b->exact_planes.items : NULL;
     for (uint32_t i = 0; i < s->item_count; ++i) {
         s->walls[i] = (cull_wall){.first_vertex = from[i].first_vertex, .vertex_count = from[i].vertex_count};
         if (!from[i].vertex_count) continue;
         const double *p = from[i].plane;
         const double offset = p[3] + p[0] * s->whole.origin[0] + p[1] * s->whole.origin[1] + p[2] * s->whole.origin[2];
         const uint32_t known = s->plane_count;
-        s->walls[i].plane = plane_find(f, keys, slots, slot_count, key_of_plane(p, offset, s->step));
-        if (s->plane_count > known) s->planes[known] = (cull_plane){{(float)p[0], (float)p[1], (float)p[2]}, (float)offset};
+        const plane_key key = exact ? key_of_exact_plane(&exact[i]) : key_of_plane(p, offset, s->step);
+        s->walls[i].plane = plane_find(f, keys, slots, slot_count, key);
+        if (s->plane_count == known) continue;
+        s->planes[known] = (cull_plane){{(float)p[0], (float)p[1], (float)p[2]}, (float)offset};
+        if (exact) keep_exact_plane(s, known, &exact[i]);
     }
+    if (!s->exact_planes) s->grid_steps_per_metre = 0;
+}
+
+// Each wall has one: those of another builder's copies, and those from before there was a grid, do not.
+static int walls_are_exact(const scene_builder *b)
+{
+    const builder_wall *walls = b->walls.items;
+    const cull_exact_plane *planes = b->exact_planes.items;
+    if (!(b->grid_steps_per_metre > 0) || b->inexact_walls) return 0;
+    for (size_t i = 0; i < b->walls.count; ++i) {
+        const int64_t *n = i < b->exact_planes.count ? planes[i].normal : NULL;
+        if (walls[i].vertex_count && (!n || !(n[0] | n[1] | n[2]))) return 0;
+    }
+    return 1;
 }
 
 static void finish_walls(finish *f)
@@ -209,6 +240,10 @@ static void finish_walls(finish *f)
     s->wall_vertex_count = (uint32_t)f->b->wall_vertices.count;
     s->walls = finish_take(f, s->item_count, sizeof *s->walls);
     s->planes = finish_take(f, f->b->wall_count, sizeof *s->planes);
+    if (walls_are_exact(f->b)) {
+        s->exact_planes = finish_take(f, f->b->wall_count, sizeof *s->exact_planes);
+        s->grid_steps_per_metre = f->b->grid_steps_per_metre;
+    }
     size_t slot_count = 64;
     while (slot_count < (size_t)f->b->wall_count * 2) slot_count *= 2;
     plane_key *keys = memory_alloc(f->b->memory, f->b->wall_count, sizeof *keys);
@@ -315,6 +350,7 @@ void scene_free(scene *s, const allocator *memory)
 {
     if (!s) return;
     arena_free(&s->memory);
+    memory_free(memory, s->file, s->file_bytes, 1);
     memory_free(memory, s, 1, sizeof *s);
 }
 

@@ -15,6 +15,10 @@ typedef struct finish {
 void *finish_take(finish *f, size_t count, size_t item_size); // of the scene's arena
 void *finish_copy(finish *f, const buffer *from);
 const char *finish_text(finish *f, const char *text);
+// Shared with who checks a scene that was made elsewhere.
+cull_box finish_item_box(const scene *s, const scene_item *item);
+int finish_portal_plane(const double (*points)[3], uint32_t count, double out[4]); // Newell's, from the first point; 0: no area
+void finish_zone_origin(const scene *s, uint32_t zone, double out[3]);
 double finish_round(double v);       // |v| < 2^51: to the nearest integer, ties to even
 double finish_origin(double middle); // to the grid of 1 m: whole moves of a scene change nothing else
 // Zones, portals, doors and all that is copied as it is; the scene's geometry is there. Changes the hash where there

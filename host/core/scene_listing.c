@@ -4,14 +4,13 @@
 // of a chain of such zones the innermost lists it. What touches no zone goes to the stray one, so nothing is ever lost.
 #include "box_tree.h"
 #include "scene_finish.h"
+#include "zone_seam.h"
 
 #include <portcullis/box.h>
 
 #include <math.h>
 #include <string.h>
 
-static const double TOUCH_STEPS = 1; // of the scene's step: rounding moves a corner by less than 0.9 of one
-static const double HOLD_STEPS = 2;  // of it: strictly inside, with both roundings
 static const double BOUNDS_ERROR = 1e-8; // of a hull's size: hull_fault's bounds are good to a tenth of it
 
 typedef enum fit { FIT_OUTSIDE, FIT_TOUCHES, FIT_HELD } fit;
@@ -24,6 +23,7 @@ typedef struct listing {
     scene_solid_plane *planes; // the same
     uint32_t *touched, *taken; // by zone: 1 + the item last seen so
     uint32_t *found;           // zones that the item touches
+    zone_seam *seams;          // by zone
     uint32_t everywhere, found_count;
     box_tree tree;
     buffer pairs; // listing_pair, by item
@@ -37,8 +37,8 @@ static tree_box box_of_item(const scene *s, uint32_t item)
 
 static fit fit_of(const listing *l, uint32_t hull, const tree_box *box)
 {
-    const double touch = TOUCH_STEPS * l->s->step, hold = HOLD_STEPS * l->s->step;
     const scene_hull *h = &l->s->hulls[hull];
+    const double touch = l->seams[h->zone].touch, hold = l->seams[h->zone].hold;
     fit best = FIT_HELD;
     for (uint32_t p = h->first_plane; p < h->first_plane + h->plane_count; ++p) {
         const double *n = l->planes[p].normal;
@@ -103,7 +103,9 @@ static result listing_open(listing *l)
     l->touched = memory_alloc_zeroed(l->memory, zones, sizeof *l->touched);
     l->taken = memory_alloc_zeroed(l->memory, zones, sizeof *l->taken);
     l->found = memory_alloc(l->memory, zones, sizeof *l->found);
-    if (!l->bounds || !l->planes || !l->touched || !l->taken || !l->found) return RESULT_NO_MEMORY;
+    l->seams = memory_alloc(l->memory, zones, sizeof *l->seams);
+    if (!l->bounds || !l->planes || !l->touched || !l->taken || !l->found || !l->seams) return RESULT_NO_MEMORY;
+    zone_seams_find(s, l->seams);
     const double *origin = s->whole.origin;
     for (uint32_t p = 0; p < s->hull_plane_count; ++p) {
         const double *n = s->hull_planes[p].normal;
@@ -112,7 +114,7 @@ static result listing_open(listing *l)
     }
     for (uint32_t h = 0; h < s->hull_count; ++h)
         for (int k = 0; k < 3; ++k) {
-            const double slack = TOUCH_STEPS * s->step + BOUNDS_ERROR * (s->hulls[h].max[k] - s->hulls[h].min[k]);
+            const double slack = l->seams[s->hulls[h].zone].touch + BOUNDS_ERROR * (s->hulls[h].max[k] - s->hulls[h].min[k]);
             l->bounds[h].min[k] = s->hulls[h].min[k] - origin[k] - slack;
             l->bounds[h].max[k] = s->hulls[h].max[k] - origin[k] + slack;
         }
@@ -128,6 +130,7 @@ static void listing_close(listing *l)
     memory_free(l->memory, l->touched, zones, sizeof *l->touched);
     memory_free(l->memory, l->taken, zones, sizeof *l->taken);
     memory_free(l->memory, l->found, zones, sizeof *l->found);
+    memory_free(l->memory, l->seams, zones, sizeof *l->seams);
     buffer_free(&l->pairs);
 }
 

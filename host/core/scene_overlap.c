@@ -1,9 +1,10 @@
-// Scene builder, the end: warns of zones side by side that overlap, where two zones both draw what is in the overlap.
+// Scene builder, the end: warns of zones side by side that overlap, where both draw what is there, and of zones apart from their outer one.
 // SPDX-License-Identifier: MIT
 #include "box_tree.h"
 #include "hull.h"
 #include "scene_finish.h"
 
+#include <math.h>
 #include <string.h>
 
 static const double DEPTH_LEAST = 0.01; // metres: walls that meet by hand-written numbers are no overlap
@@ -103,10 +104,46 @@ static void tell_end(const overlap *o)
         report_warning(o->report, o->path, 0, "not all zones were looked at for overlaps: too many lie near each other");
 }
 
+// ---- Zones in others ----
+
+static void bounds_of(const scene *s, uint32_t zone, tree_box *out)
+{
+    const scene_zone *z = &s->zones[zone];
+    for (int k = 0; k < 3; ++k) {
+        out->min[k] = INFINITY;
+        out->max[k] = -INFINITY;
+        for (uint32_t h = z->first_hull; h < z->first_hull + z->hull_count; ++h) {
+            out->min[k] = fmin(out->min[k], s->hulls[h].min[k]);
+            out->max[k] = fmax(out->max[k], s->hulls[h].max[k]);
+        }
+    }
+}
+
+// By bounds: what is told is so, not all that is so is told.
+static result tell_apart(const scene *s, const char *path, const allocator *memory, report *r)
+{
+    tree_box *bounds = memory_alloc(memory, s->zone_count, sizeof *bounds);
+    if (!bounds) return RESULT_NO_MEMORY;
+    for (uint32_t z = 0; z < s->zone_count; ++z) bounds_of(s, z, &bounds[z]);
+    for (uint32_t z = 0; z < s->zone_count; ++z) {
+        const uint32_t outer = s->zones[z].parent;
+        if (outer == SCENE_NONE || !s->zones[outer].hull_count) continue;
+        int apart = 0;
+        for (int k = 0; k < 3; ++k)
+            apart |= bounds[z].min[k] > bounds[outer].max[k] + DEPTH_LEAST || bounds[z].max[k] < bounds[outer].min[k] - DEPTH_LEAST;
+        if (apart)
+            report_warning(r, path, 0, "the zone \"%s\" is said to lie in \"%s\" but does not touch it; move it there, or take \"in\" out",
+                           s->zones[z].name, s->zones[outer].name);
+    }
+    memory_free(memory, bounds, s->zone_count, sizeof *bounds);
+    return RESULT_OK;
+}
+
 result finish_overlaps(finish *f, const char *path, report *r)
 {
     const scene *s = f->s;
     if (s->hull_count < 2) return RESULT_OK;
+    if (tell_apart(s, path, f->b->memory, r) != RESULT_OK) return report_no_memory(r, path);
     overlap o = {.s = s, .path = path, .report = r};
     o.bounds = memory_alloc(f->b->memory, s->hull_count, sizeof *o.bounds);
     if (!o.bounds) return report_no_memory(r, path);

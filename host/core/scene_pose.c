@@ -1,7 +1,7 @@
 // Where movers are: keys of a path, a door's offset, and the box of a mover in a pose.
 // SPDX-License-Identifier: MIT
 // Invariant: a pose that is not turned has the identity, bit for bit; a pose's box holds every vertex of the mover.
-#include "scene.h"
+#include "hull.h"
 
 #include <float.h>
 #include <math.h>
@@ -16,13 +16,7 @@ static const double IDENTITY[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 double scene_hull_height(const scene *s, uint32_t hull, const double p[3])
 {
     const scene_hull *h = &s->hulls[hull];
-    double most = -INFINITY;
-    for (uint32_t i = h->first_plane; i < h->first_plane + h->plane_count; ++i) {
-        const scene_solid_plane *plane = &s->hull_planes[i];
-        const double height = ((plane->normal[0] * p[0] + plane->normal[1] * p[1]) + plane->normal[2] * p[2]) - plane->distance;
-        most = height > most ? height : most;
-    }
-    return most;
+    return hull_height(s->hull_planes + h->first_plane, h->plane_count, p);
 }
 
 // ---- Poses ----

@@ -60,27 +60,16 @@ static void round_point(const scene *s, const double from[3], double out[3])
     for (int k = 0; k < 3; ++k) out[k] = s->whole.origin[k] + finish_round((from[k] - s->whole.origin[k]) / s->step) * s->step;
 }
 
-// Newell's plane from the first point. 0: no area.
-static int plane_of_points(const double (*points)[3], uint32_t count, double out[4])
+int finish_portal_plane(const double (*points)[3], uint32_t count, double out[4])
 {
-    double sum[3] = {0, 0, 0}, twice_area[3] = {0, 0, 0};
-    for (uint32_t i = 1; i < count; ++i) {
-        double a[3], c[3];
-        for (int k = 0; k < 3; ++k) {
-            a[k] = points[i][k] - points[0][k];
-            c[k] = i + 1 < count ? points[i + 1][k] - points[0][k] : 0;
-            sum[k] += a[k];
-        }
-        twice_area[0] += a[1] * c[2] - a[2] * c[1];
-        twice_area[1] += a[2] * c[0] - a[0] * c[2];
-        twice_area[2] += a[0] * c[1] - a[1] * c[0];
-    }
+    double middle[3], twice_area[3];
+    polygon_measure(points, count, middle, twice_area);
     const double length = sqrt((twice_area[0] * twice_area[0] + twice_area[1] * twice_area[1]) + twice_area[2] * twice_area[2]);
     if (!(length > 0)) return 0;
     out[3] = 0;
     for (int k = 0; k < 3; ++k) {
         out[k] = twice_area[k] / length + 0.0;
-        out[3] -= out[k] * (points[0][k] + sum[k] / count);
+        out[3] -= out[k] * middle[k];
     }
     return 1;
 }
@@ -117,7 +106,7 @@ static result finish_portals(finish *f, const char *path, report *r)
         *to = (scene_portal){.name = name, .zones = {g->zones[0], g->zones[1]}, .first_point = s->portal_point_count, .door = g->door};
         double(*rounded)[3] = s->portal_points + to->first_point;
         to->point_count = round_portal(s, points + g->first_point, g->point_count, rounded);
-        if (to->point_count < 3 || !plane_of_points((const double(*)[3])rounded, to->point_count, to->plane))
+        if (to->point_count < 3 || !finish_portal_plane((const double(*)[3])rounded, to->point_count, to->plane))
             return report_error(r, path, 0, "the portal \"%s\" has no area at this scene's precision of %g m; make it larger or leave it out",
                                 g->name, s->step);
         s->portal_point_count += to->point_count;
@@ -178,13 +167,11 @@ static span span_of_zone(const scene *s, const scene_zone *z)
     return b;
 }
 
-static void find_origins(scene *s)
+void finish_zone_origin(const scene *s, uint32_t zone, double out[3])
 {
-    for (uint32_t z = 0; z < s->zone_count; ++z) {
-        const span b = span_of_zone(s, &s->zones[z]);
-        const int is_plain = s->zone_count == 1 || !(b.low[0] <= b.high[0]);
-        for (int k = 0; k < 3; ++k) s->zones[z].origin[k] = is_plain ? s->whole.origin[k] : finish_origin((b.low[k] + b.high[k]) / 2);
-    }
+    const span b = span_of_zone(s, &s->zones[zone]);
+    const int is_plain = s->zone_count == 1 || !(b.low[0] <= b.high[0]);
+    for (int k = 0; k < 3; ++k) out[k] = is_plain ? s->whole.origin[k] : finish_origin((b.low[k] + b.high[k]) / 2);
 }
 
 static void widen_radius(scene *s)
@@ -243,7 +230,7 @@ result finish_zones(finish *f, const char *path, report *r)
     done = finish_listings(f, path, r);
     if (done == RESULT_OK) done = finish_overlaps(f, path, r);
     if (done != RESULT_OK) return done;
-    find_origins(s);
+    for (uint32_t z = 0; z < s->zone_count; ++z) finish_zone_origin(s, z, s->zones[z].origin);
     widen_radius(s);
     if (f->b->zones.count) s->hash = hash_of_zones(s, s->hash);
     if (s->key_count) s->hash = hash_of_paths(s, s->hash);

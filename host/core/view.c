@@ -131,7 +131,7 @@ void view_base_make(const camera *c, const view_frame *f, view_base *out)
     clip_from_eye(c, out, out->clip_from_eye);
 }
 
-static double zone_corner_height(const cull_plane *p, const cull_box *b)
+double view_plane_height(const cull_plane *p, const cull_box *b)
 {
     const double n[3] = {(double)p->normal.x, (double)p->normal.y, (double)p->normal.z};
     const double low[3] = {(double)b->min.x, (double)b->min.y, (double)b->min.z};
@@ -143,7 +143,7 @@ static double zone_corner_height(const cull_plane *p, const cull_box *b)
 
 static void volume_add(view_volume *volume, cull_plane plane, const cull_box *zone_box)
 {
-    if (zone_corner_height(&plane, zone_box) >= 0) return; // the whole zone is inside
+    if (view_plane_height(&plane, zone_box) >= 0) return; // the whole zone is inside
     volume->planes[volume->plane_count++] = plane;
 }
 

@@ -45,6 +45,8 @@ typedef struct view_place { double origin[3]; cull_box box; float radius; } view
 void view_in_zone(const view_base *b, const view_place *z, cull_view *out);
 void view_volume_in_zone(const view_base *b, const view_place *z, view_volume *out); // the whole frustum, as in view_derive
 
+double view_plane_height(const cull_plane *plane, const cull_box *box); // of the box's least corner: 0 or more, and all of it is inside
+
 // The camera seen from a zone: view, and the whole frustum as a guarded volume. Planes that the zone's box lies inside
 // of are left out. The far plane is one of them while far_m is finite.
 void view_derive(const camera *c, const view_frame *f, const double zone_origin[3], const cull_box *zone_box, cull_view *view,

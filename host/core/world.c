@@ -54,25 +54,39 @@ static void place_mover(world *w, uint32_t mover, result (*place)(movers *, uint
 
 static void shut_portals(world *w, uint32_t door)
 {
-    for (uint32_t i = 0; i < w->scene->portal_count; ++i)
-        if (w->scene->portals[i].door == door) w->open[i] = w->doors[door] == DOORS_OPEN;
+    for (uint32_t i = w->door_first[door]; i < w->door_first[door + 1]; ++i) w->open[w->door_portals[i]] = w->doors[door] == DOORS_OPEN;
     w->open_changes++;
+}
+
+// Opening a door costs its own portals, not all.
+static result open_doors(world *w)
+{
+    const scene *s = w->scene;
+    const size_t firsts = (size_t)s->door_count + 1;
+    w->doors = memory_alloc_zeroed(w->memory, s->door_count, sizeof *w->doors);
+    w->open = memory_alloc_zeroed(w->memory, s->portal_count, 1);
+    w->door_portals = memory_alloc(w->memory, s->portal_count, sizeof *w->door_portals);
+    w->door_first = memory_alloc_zeroed(w->memory, firsts, sizeof *w->door_first);
+    if (!w->doors || !w->open || !w->door_portals || !w->door_first) return RESULT_NO_MEMORY;
+    for (uint32_t d = 0; d < s->door_count; ++d) w->doors[d] = s->doors[d].at_rest;
+    for (uint32_t p = 0; p < s->portal_count; ++p) {
+        const uint32_t door = s->portals[p].door;
+        w->open[p] = door == SCENE_NONE || w->doors[door] == DOORS_OPEN;
+        if (door != SCENE_NONE) w->door_first[door]++;
+    }
+    for (uint32_t d = 0, sum = 0; d < firsts; ++d) w->door_first[d] = sum += w->door_first[d]; // where each ends
+    for (uint32_t p = s->portal_count; p-- > 0;)
+        if (s->portals[p].door != SCENE_NONE) w->door_portals[--w->door_first[s->portals[p].door]] = p;
+    return RESULT_OK;
 }
 
 static result open_movers(world *w)
 {
     const scene *s = w->scene;
     w->poses = memory_alloc_zeroed(w->memory, s->mover_count, sizeof *w->poses);
-    w->doors = memory_alloc_zeroed(w->memory, s->door_count, sizeof *w->doors);
-    w->open = memory_alloc_zeroed(w->memory, s->portal_count, 1);
-    if (!w->poses || !w->doors || !w->open || graph_open(s, w->memory, &w->graph) != RESULT_OK) return RESULT_NO_MEMORY;
+    if (!w->poses || open_doors(w) != RESULT_OK || graph_open(s, w->memory, &w->graph) != RESULT_OK) return RESULT_NO_MEMORY;
     const movers_request q = {s, w->graph, w->mover_numbers};
     if (movers_open(&q, w->memory, &w->movers) != RESULT_OK) return RESULT_NO_MEMORY;
-    for (uint32_t i = 0; i < s->door_count; ++i) w->doors[i] = s->doors[i].at_rest;
-    for (uint32_t i = 0; i < s->portal_count; ++i) {
-        const uint32_t door = s->portals[i].door;
-        w->open[i] = door == SCENE_NONE || w->doors[door] == DOORS_OPEN;
-    }
     for (uint32_t i = 0; i < s->mover_count; ++i) place_mover(w, i, movers_add);
     return RESULT_OK;
 }
@@ -145,6 +159,8 @@ void world_close(world *w)
     memory_free(memory, w->shared_items, w->shared_count, sizeof *w->shared_items);
     memory_free(memory, w->poses, s->mover_count, sizeof *w->poses);
     memory_free(memory, w->doors, s->door_count, sizeof *w->doors);
+    memory_free(memory, w->door_portals, s->portal_count, sizeof *w->door_portals);
+    memory_free(memory, w->door_first, (size_t)s->door_count + 1, sizeof *w->door_first);
     memory_free(memory, w->open, s->portal_count, 1);
     if (w->loading) pthread_mutex_destroy(w->loading);
     memory_free(memory, w->loading, 1, sizeof *w->loading);

@@ -3,6 +3,7 @@
 // Invariant: a swap puts all of the new chain in place, in every view, or nothing of it.
 #include "world_parts.h"
 
+#include <stdio.h>
 #include <string.h>
 
 struct world_swap {
@@ -54,13 +55,47 @@ static result make_shared(const world *w, const zone_data *data, zone_chain *c)
     return numbers && c->shared ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
+// ---- What is wrong with a chain that the scene names ----
+
+typedef struct kept_error { char text[1024]; const report *through; } kept_error;
+
+static void keep_error(void *user, report_level level, const char *text)
+{
+    kept_error *k = user;
+    if (level == REPORT_ERROR) snprintf(k->text, sizeof k->text, "%s", text);
+    else if (k->through->line) k->through->line(k->through->user, level, text);
+}
+
+static result build_told(const chain_request *build, const char *path, const char *zone, report *r, chain **out)
+{
+    static const char none[] = "portcullis: error: ";
+    kept_error kept = {.through = r};
+    report inner = {.line = keep_error, .user = &kept, .warnings = r->warnings};
+    const result done = chain_build(build, &inner, out);
+    r->warnings = inner.warnings;
+    if (done == RESULT_NO_MEMORY) return report_no_memory(r, path);
+    if (done == RESULT_OK) return done;
+    const size_t skipped = strncmp(kept.text, none, sizeof none - 1) == 0 ? sizeof none - 1 : 0;
+    report_error(r, path, 0, "zone '%.200s': %s", zone, kept.text + skipped);
+    return done;
+}
+
+// A person who did not type the chain is told where it stands.
+static result build_chain(const zone_chain_request *q, const chain_request *build, report *r, chain **out)
+{
+    const scene *s = q->world->scene;
+    const scene_zone *zone = &s->zones[q->zone];
+    if (!zone->chain || strcmp(zone->chain, q->spec->text) != 0) return chain_build(build, r, out);
+    return build_told(build, s->path, zone->name, r, out);
+}
+
 result zone_chain_build(const zone_chain_request *q, report *r, zone_chain *out)
 {
     const world *w = q->world;
     const zone_data *data = &w->data[q->zone];
     const chain_request build = {q->spec, data, w->plugins, w->services, w->loading};
     zone_chain made = {0};
-    const result done = chain_build(&build, r, &made.chain);
+    const result done = build_chain(q, &build, r, &made.chain);
     if (done != RESULT_OK) return done;
     if (make_shared(w, data, &made) != RESULT_OK) {
         zone_chain_close(&made, w, q->zone);

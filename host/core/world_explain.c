@@ -58,7 +58,7 @@ static void say_way(const explanation *e, uint32_t volume)
     if (f->is_everything) say(e->out, "    the eye is in no zone: all zones are seen whole\n");
     else if (start->parent != SCENE_NONE) say(e->out, "    the eye -> ... -> '%s'", zone_name(e, start->zone));
     else if (e->w->scene->zones[start->zone].flags & ZONE_STRAY) say(e->out, "    looked at in every view: '%s'", zone_name(e, start->zone));
-    else say(e->out, start->way == SCENE_NONE ? "    eye in '%s'" : "    volumes merged in '%s'", zone_name(e, start->zone));
+    else say(e->out, start->is_merged ? "    volumes merged in '%s'" : "    eye in '%s'", zone_name(e, start->zone));
     if (f->is_everything) return;
     while (count-- > 0) {
         const flow_volume *v = &f->volumes[way[count]];

@@ -37,6 +37,8 @@ struct world {
     uint32_t *shared_items;   // global ids that several zones list, ascending; their places are the shared numbers
     uint8_t *open;            // by portal
     door_state *doors;
+    uint32_t *door_portals;   // portals that doors close, door by door
+    uint32_t *door_first;     // by door, and one more: in door_portals
     scene_pose *poses;        // by mover of the scene
     world_view *views;
     pthread_mutex_t *loading; // libraries and creates, see chain_request

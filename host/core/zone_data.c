@@ -1,6 +1,7 @@
 // Zone data: a zone's items, vertices, walls and portals, numbered and placed as its own.
 // SPDX-License-Identifier: MIT
 // Invariant: one block as large as the zone, in work that the zone's own size bounds: 10,000 zones cost what they hold.
+#include "exact_plane.h"
 #include "zone_data.h"
 
 #include <portcullis/box.h>
@@ -51,6 +52,7 @@ typedef struct zone_arrays { // parts of the block; shared with the scene where 
     uint32_t *indices, *wall_vertices, *shared;
     cull_wall *walls;
     cull_plane *planes;
+    cull_exact_plane *exact_planes;
     cull_portal *portals;
     cull_vec3 *portal_points;
 } zone_arrays;
@@ -63,6 +65,7 @@ typedef struct zone_fill {
     renumber vertices, planes;
     size_t index_count, wall_vertex_count, point_count;
     uint32_t shared_count, wall_count;
+    int is_exact; // all exact planes are there, about the zone's origin too
     int is_whole; // it lists all items, about the scene's origin: arrays are the scene's
     zone_arrays to;
 } zone_fill;
@@ -122,6 +125,7 @@ static size_t lay_out(zone_fill *f, void *block)
     to->walls = part(&l, count, sizeof *to->walls);
     to->wall_vertices = part(&l, f->wall_vertex_count, sizeof *to->wall_vertices);
     to->planes = part(&l, f->planes.count, sizeof *to->planes);
+    if (f->s->exact_planes) to->exact_planes = part(&l, f->planes.count, sizeof *to->exact_planes);
     return l.used;
 }
 
@@ -193,6 +197,7 @@ static void fill_walls(zone_fill *f)
         to->plane = renumbered(&f->planes, from->plane);
         if (to->plane < planes) continue;
         f->to.planes[to->plane] = plane_here(f, s->planes[from->plane].normal, to);
+        if (f->to.exact_planes) f->is_exact &= exact_plane_move(&s->exact_planes[from->plane], f->shift, s->grid_steps_per_metre, &f->to.exact_planes[to->plane]);
         ++planes; // numbered by first use, so they come in order
     }
 }
@@ -263,6 +268,8 @@ static void fill_zone(zone_fill *f, uint32_t mover_capacity, cull_zone *out)
         out->walls = s->walls;
         out->wall_vertices = s->wall_vertices;
         out->planes = s->planes;
+        out->exact_planes = s->exact_planes;
+        out->grid_steps_per_metre = s->grid_steps_per_metre;
         out->box = s->whole.box;
         out->radius = s->whole.radius;
         out->position_count = s->position_count;
@@ -277,6 +284,10 @@ static void fill_zone(zone_fill *f, uint32_t mover_capacity, cull_zone *out)
     out->walls = to->walls;
     out->wall_vertices = to->wall_vertices;
     out->planes = to->planes;
+    if (to->exact_planes && f->is_exact) {
+        out->exact_planes = to->exact_planes;
+        out->grid_steps_per_metre = s->grid_steps_per_metre;
+    }
     out->box = all;
     out->radius = cull_box_radius(all);
     out->position_count = f->vertices.count;
@@ -298,7 +309,7 @@ result zone_data_open(const zone_data_request *q, const allocator *memory, zone_
 {
     const scene *s = q->scene;
     const scene_zone *zone = &s->zones[q->zone];
-    zone_fill f = {.s = s, .zone = zone, .items = s->zone_items + zone->first_item};
+    zone_fill f = {.s = s, .zone = zone, .items = s->zone_items + zone->first_item, .is_exact = 1};
     zone_data made = {.scene = s, .index = q->zone, .memory = memory};
     for (int k = 0; k < 3; ++k) f.shift[k] = zone->origin[k] - s->whole.origin[k];
     count_zone(&f);

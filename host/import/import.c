@@ -1,5 +1,6 @@
 // Import: chooses the reader by the file name's ending, and makes a scene of what it reads.
 // SPDX-License-Identifier: MIT
+#include "pcs.h"
 #include "reader.h"
 
 #include "../core/file.h"
@@ -55,8 +56,9 @@ result reader_make_scene(reader read, const reader_job *without_builder, scene *
 
 result import_scene(const char *path, const import_options *options, const allocator *memory, report *r, scene **out)
 {
+    if (ends_with(path, ".pcs")) return pcs_load(path, memory, r, out); // its doors stay as they were compiled: a world moves them
     const reader read = reader_of_file(path);
-    if (!read) return report_error(r, path, 0, "unknown kind of scene; the name must end in " READER_ENDINGS);
+    if (!read) return report_error(r, path, 0, "unknown kind of scene; the name must end in .pcs, " READER_ENDINGS);
     char *text = NULL;
     size_t size = 0;
     result done = reader_text(NULL, path, memory, r, &text, &size);

@@ -1,4 +1,4 @@
-// Import: any scene file into a scene. By the name's ending: .json .map .obj .ply .off .stl .boxes.
+// Import: any scene file into a scene. By the name's ending: .pcs .json .map .obj .ply .off .stl .boxes.
 // SPDX-License-Identifier: MIT
 #ifndef PORTCULLIS_HOST_IMPORT_H
 #define PORTCULLIS_HOST_IMPORT_H
@@ -6,7 +6,7 @@
 #include "../core/scene.h"
 
 typedef struct import_options {
-    door_state doors; // DOORS_OPEN: as the file says, a .map's all open; DOORS_SHUT: all shut
+    door_state doors; // DOORS_OPEN: as the file says, a .map's all open; DOORS_SHUT: all shut. A .pcs keeps its own
 } import_options;
 
 // Where the files come from that a JSON scene names. `read` is as file_read.

@@ -4,7 +4,33 @@
 
 #include <string.h>
 
+static const double COORDINATE_MOST = 1e9, WIDTH_MOST = 32768 + 2; // metres; scene_builder_finish is exact, by the scene's origin
+static const uint64_t SIZE_MOST = 200000000; // triangles, say: some 10 GB of scene
+
 // ---- What the passes share ----
+
+// What scene_builder_finish would say without a place.
+static result check_bounds(const json_entry *e)
+{
+    builder_bounds *b = &e->scene->bounds;
+    double width = 0;
+    builder_bounds_more(e->scene->job->builder, b);
+    for (int k = 0; k < 3; ++k) {
+        if (b->low[k] < -COORDINATE_MOST || b->high[k] > COORDINATE_MOST)
+            return node_fault(&e->node, "a coordinate beyond 1e9 m; move this nearer to the scene's origin");
+        width = b->high[k] - b->low[k] > width ? b->high[k] - b->low[k] : width;
+    }
+    if (width <= WIDTH_MOST) return RESULT_OK;
+    return node_fault(&e->node, "with this the scene is %.0f m wide; one zone holds 32,768 m at 1 mm, so split or scale it", width);
+}
+
+result entry_room(const json_entry *e, uint64_t size_each, uint32_t copies)
+{
+    const uint64_t there = scene_builder_size(e->scene->job->builder), room = there < SIZE_MOST ? SIZE_MOST - there : 0;
+    if (size_each <= room / copies) return RESULT_OK;
+    return node_fault(&e->node, "%lu times %llu triangles or vertices; a scene holds %llu, so use fewer copies or a simpler file",
+                      (unsigned long)copies, (unsigned long long)size_each, (unsigned long long)SIZE_MOST);
+}
 
 result entries_read(json_scene *s, const char *list_key, entry_reader read)
 {
@@ -21,6 +47,7 @@ result entries_read(json_scene *s, const char *list_key, entry_reader read)
             const builder_transform nothing = placement_none();
             done = entry_place(&e, &nothing);
             if (done == RESULT_OK) done = read(&e);
+            if (done == RESULT_OK) done = check_bounds(&e);
         }
     }
     scene_builder_transform_end(s->job->builder);
@@ -53,6 +80,8 @@ result entry_name(const json_entry *e, const char *name, const char **out)
     const char *prefix = *name == '/' ? "" : e->document->prefix;
     if (*name == '/') name++;
     const size_t before = strlen(prefix), length = strlen(name);
+    if (before + length > NAME_BYTES_MOST)
+        return node_fault(&e->node, "with the includes round it a name of over %d bytes; shorten it", NAME_BYTES_MOST);
     char *full = arena_push(&e->scene->memory, before + length + 1, 1);
     if (!full) return entry_no_memory(e);
     memcpy(full, prefix, before);
@@ -119,7 +148,8 @@ static result read_passes(json_scene *s)
                                                      doors_read,     portals_read,  lights_read, paths_read};
     result done = RESULT_OK;
     for (size_t p = 0; p < sizeof passes / sizeof *passes && done == RESULT_OK; ++p) done = passes[p](s);
-    return done;
+    if (done != RESULT_OK || scene_builder_item_count(s->job->builder)) return done;
+    return report_error(s->job->report, s->job->path, 0, "no polygon to draw; add \"meshes\", \"boxes\", \"walls\" or \"movers\"");
 }
 
 result json_into(const reader_job *j)
@@ -130,14 +160,17 @@ result json_into(const reader_job *j)
                     .documents = buffer_make(memory, sizeof(json_document *)),
                     .door_list = buffer_make(memory, sizeof(door_entry)),
                     .errors_before = j->report->errors,
-                    .models = models_make(memory),
+                    .bounds = builder_bounds_none(),
                     .object = SCENE_NONE};
     name_table *const tables[] = {&s.zones, &s.portals, &s.doors, &s.movers, &s.paths, &s.moved};
     const size_t table_count = sizeof tables / sizeof *tables;
     for (size_t t = 0; t < table_count; ++t) *tables[t] = name_table_make(memory);
+    sources_open(&s);
+    models_open(&s);
     const result done = read_passes(&s);
     for (size_t t = 0; t < table_count; ++t) name_table_free(tables[t]);
-    documents_free(&s);
+    buffer_free(&s.documents);
+    sources_free(&s);
     models_free(&s);
     buffer_free(&s.door_list);
     arena_free(&s.memory);

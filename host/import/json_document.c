@@ -1,4 +1,4 @@
-// The files of a JSON scene: parses each, follows its includes of .json, tells cycles.
+// The documents of a JSON scene: follows includes of .json, tells cycles.
 // SPDX-License-Identifier: MIT
 // Invariant: a document's file is open once in any chain of includes, and no chain is longer than DEPTH_MOST.
 #include "json_scene.h"
@@ -11,36 +11,6 @@ enum { DEPTH_MOST = 64, CHAIN_BYTES = 512, PATH_BYTES = 4096, PIECES_MOST = 6553
 static const char *const top_keys[] = {"portcullis", "name",  "include", "meshes", "boxes", "walls",   "zones",
                                        "portals",    "doors", "movers",  "lights", "paths", "$schema", NULL};
 static const char *const include_keys[] = {"file", "name", PLACEMENT_KEYS, NULL};
-
-// ---- Parsing ----
-
-static size_t byte_order_mark(const char *text, size_t size) // UTF-8's
-{
-    return size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
-}
-
-// jansson tells the end of the word that it stumbles over, and the word: its beginning is where people look.
-static json_place place_of(const json_file *f, const json_error_t *error)
-{
-    static const char before[] = " near '";
-    size_t at = error->position > 0 ? (size_t)error->position : 0;
-    const char *near = strstr(error->text, before);
-    const size_t word = near ? strlen(near + sizeof before - 1) - 1 : 0; // less the closing quote
-    if (at > f->size) at = f->size;
-    return json_place_at(f->text, word <= at ? at - word : at);
-}
-
-static result parse(json_file *f)
-{
-    json_error_t error;
-    f->root = json_loadb(f->text, f->size, JSON_REJECT_DUPLICATES | JSON_DECODE_INT_AS_REAL, &error);
-    if (f->root) return RESULT_OK;
-    if (json_error_code(&error) == json_error_out_of_memory) return report_no_memory(f->report, f->path);
-    char place[CHAIN_BYTES];
-    const json_place p = place_of(f, &error);
-    snprintf(place, sizeof place, "%.480s:%zu", f->path, p.line);
-    return report_error(f->report, place, p.column, "not JSON: %s; correct it", error.text);
-}
 
 // ---- Paths ----
 
@@ -84,12 +54,6 @@ result entry_count_piece(const json_entry *e)
     return RESULT_OK;
 }
 
-static void document_free(const json_scene *s, json_document *d)
-{
-    json_decref(d->file.root);
-    if (d->own_text) memory_free(s->job->memory, d->own_text, d->own_bytes, 1);
-}
-
 // ---- Includes ----
 
 typedef struct load_request { // what is to be opened
@@ -99,7 +63,7 @@ typedef struct load_request { // what is to be opened
     uint32_t depth;
 } load_request;
 
-static result load(json_scene *s, const load_request *q, char *own_text, const char *text, size_t size);
+static result load(json_scene *s, const load_request *q, const json_file *file);
 
 static result check_chain(const json_entry *e, const json_node *file, const char *path, uint32_t depth)
 {
@@ -128,6 +92,8 @@ static result prefix_of(const json_entry *e, const char **out)
     if (done != RESULT_OK) return done;
     if (*name == '/') return node_fault(&name_node, "a name begins with '/'; take it off");
     const size_t before = strlen(*out), length = strlen(name);
+    if (before + length + 1 > NAME_BYTES_MOST)
+        return node_fault(&name_node, "with the includes round it a name of over %d bytes; shorten it", NAME_BYTES_MOST);
     char *prefix = arena_push(&e->scene->memory, before + length + 2, 1);
     if (!prefix) return entry_no_memory(e);
     memcpy(prefix, *out, before);
@@ -177,10 +143,9 @@ static result load_include(const json_entry *e, uint32_t depth)
     if (done == RESULT_OK) done = placement_read(&e->node, &inner);
     if (done != RESULT_OK) return done;
     q.place = placement_within(&e->document->place, &inner);
-    char *text;
-    size_t size;
-    done = entry_text(e, &file, q.path, &text, &size);
-    return done == RESULT_OK ? load(e->scene, &q, text, text, size) : done;
+    json_file source;
+    done = source_find(e, &file, q.path, &source);
+    return done == RESULT_OK ? load(e->scene, &q, &source) : done;
 }
 
 static result load_includes(json_scene *s, json_document *d, uint32_t depth)
@@ -213,42 +178,26 @@ static result check_format(const json_document *d)
     return node_fault(&format, "format %u; this reader knows format %d", number, FORMAT);
 }
 
-// The document is in the list, last of its includes, once this returns RESULT_OK; else freed.
-static result load(json_scene *s, const load_request *q, char *own_text, const char *text, size_t size)
+// The document comes into the list behind its includes.
+static result load(json_scene *s, const load_request *q, const json_file *file)
 {
-    const size_t mark = byte_order_mark(text, size);
     json_document *d = arena_push(&s->memory, 1, sizeof *d);
-    if (!d) {
-        if (own_text) memory_free(s->job->memory, own_text, size + 1, 1);
-        return report_no_memory(s->job->report, q->path);
-    }
-    *d = (json_document){.file = {.path = q->path, .text = text + mark, .size = size - mark, .report = s->job->report},
-                         .prefix = q->prefix,
-                         .place = q->place,
-                         .above = q->above,
-                         .own_text = own_text,
-                         .own_bytes = size + 1};
-    result done = parse(&d->file);
-    if (done == RESULT_OK) done = check_format(d);
+    if (!d) return report_no_memory(s->job->report, q->path);
+    *d = (json_document){.file = *file, .prefix = q->prefix, .place = q->place, .above = q->above};
+    result done = check_format(d);
     if (done == RESULT_OK) done = load_includes(s, d, q->depth);
     if (done == RESULT_OK && !buffer_append(&s->documents, &d, 1)) done = report_no_memory(s->job->report, q->path);
-    if (done != RESULT_OK) document_free(s, d);
     return done;
 }
 
 result documents_load(json_scene *s)
 {
     const reader_job *j = s->job;
+    json_file file;
     char *path = arena_text(&s->memory, j->path, strlen(j->path));
     if (!path) return report_no_memory(j->report, j->path);
     straighten(path);
     const load_request q = {.path = path, .prefix = "", .place = placement_none()};
-    return load(s, &q, NULL, j->text, j->size);
-}
-
-void documents_free(json_scene *s)
-{
-    json_document *const *documents = s->documents.items;
-    for (size_t i = 0; i < s->documents.count; ++i) document_free(s, documents[i]);
-    buffer_free(&s->documents);
+    const result done = source_add(s, path, (source_text){.bytes = j->text, .size = j->size}, &file);
+    return done == RESULT_OK ? load(s, &q, &file) : done;
 }

@@ -24,32 +24,28 @@ static result read_repeat(const json_node *entry, repeat *out)
     return done == RESULT_OK ? node_numbers(&step, 3, out->step) : done;
 }
 
-static result add_copies(const json_entry *e, reader read, const reader_job *file)
+static result add_copies(const json_entry *e, const scene_builder *mesh)
 {
     repeat copies;
     builder_transform place;
     result done = placement_read(&e->node, &place);
     if (done == RESULT_OK) done = read_repeat(&e->node, &copies);
+    if (done == RESULT_OK) done = entry_room(e, scene_builder_size(mesh), copies.count);
     for (uint32_t i = 0; done == RESULT_OK && i < copies.count; ++i) {
         const double offset[3] = {i * copies.step[0], i * copies.step[1], i * copies.step[2]};
         const builder_transform move = placement_move(offset), all = placement_within(&move, &place);
         done = entry_count_piece(e);
         if (done == RESULT_OK) done = entry_place(e, &all);
-        if (done == RESULT_OK) done = read(file);
+        if (done == RESULT_OK) done = entry_told(e, scene_builder_append(e->scene->job->builder, mesh), "file", NULL);
     }
     return done;
 }
 
-static result add_file(const json_entry *e, const json_node *file, reader read, const char *path)
+static result add_file(const json_entry *e, const json_node *file, const char *path)
 {
-    reader_job job = *e->scene->job;
-    char *text;
-    const result found = entry_text(e, file, path, &text, &job.size);
-    if (found != RESULT_OK) return found;
-    job.path = path;
-    job.text = text;
-    const result done = add_copies(e, read, &job);
-    memory_free(job.memory, text, job.size + 1, 1);
+    const scene_builder *mesh;
+    const result found = mesh_find(e, file, path, &mesh);
+    const result done = found == RESULT_OK ? add_copies(e, mesh) : found;
     e->scene->object = SCENE_NONE;
     return done;
 }
@@ -65,7 +61,7 @@ static result read_include(const json_entry *e)
     json_node name;
     if (read == json_into) return RESULT_OK; // its parts come as a document of its own
     if (node_find(&e->node, "name", &name)) return node_fault(&name, "only a .json include has names to put this before; take it out");
-    return add_file(e, &file, read, path);
+    return add_file(e, &file, path);
 }
 
 static result read_mesh(const json_entry *e)
@@ -81,7 +77,7 @@ static result read_mesh(const json_entry *e)
     const reader read = reader_of_file(path);
     if (read == json_into) return node_fault(&file, "a scene is no mesh; put it under \"include\"");
     if (!read) return node_fault(&file, "unknown kind of mesh; the name must end in .obj, .ply, .off, .stl, .boxes or .map");
-    return add_file(e, &file, read, path);
+    return add_file(e, &file, path);
 }
 
 // ---- Polygons ----

@@ -66,7 +66,9 @@ static result add_model(const json_entry *e, const scene *s, mover_shape *shape)
 {
     scene_builder *b = e->scene->job->builder;
     uint32_t first = 0;
-    result done = add_vertices(b, s, &first);
+    result done = entry_room(e, s->position_count > s->index_count / 3 ? s->position_count : s->index_count / 3, 1);
+    if (done != RESULT_OK) return done;
+    done = add_vertices(b, s, &first);
     if (done == RESULT_OK) done = choose_material(b, s, &shape->item);
     if (done != RESULT_OK) return entry_told(e, done, "mover", NULL);
     uint32_t *indices = buffer_push(&shape->indices, s->index_count), *triangles = buffer_push(&shape->triangles, s->polygon_count);
@@ -166,7 +168,7 @@ static result give_path(const json_entry *e, const mover_entry *m, const double 
     }
     for (int k = 0; pivot && k < 3; ++k) moved[k] = pivot[k] + (stands_open(m) ? m->open[k] : 0);
     if (pivot) path.pivot = moved;
-    return entry_told(e, scene_builder_mover_path(e->scene->job->builder, m->number, &path), "mover's path", NULL);
+    return entry_told(e, scene_builder_mover_path(e->scene->job->builder, m->number, &path), "mover's path", "leads beyond 1e9 m; keep it nearer to the scene's origin");
 }
 
 static result read_path(const json_entry *e, const mover_entry *m)
@@ -288,7 +290,8 @@ static result read_door(const json_entry *e)
     if (done == RESULT_OK && node_find(&e->node, "mover", &node)) done = entry_refer(e, &node, &s->movers, "mover", &mover);
     if (done != RESULT_OK) return done;
     const door_entry *door = (const door_entry *)s->door_list.items + own->number;
-    return entry_told(e, scene_builder_door(s->job->builder, own->name, door->at_rest, mover, &own->number), "door", NULL);
+    return entry_told(e, scene_builder_door(s->job->builder, own->name, door->at_rest, mover, &own->number), "door",
+                      "has a leaf that lies beyond 1e9 m, shut or open; keep it nearer to the scene's origin");
 }
 
 result doors_read(json_scene *s)

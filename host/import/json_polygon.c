@@ -70,7 +70,7 @@ const char *polygon_plane(const double (*points)[3], size_t count, double plane[
     const double extent = extent_of(points, count), slack = extent * FLAT_SHARE;
     const vec area = newell(points, count);
     const double twice = length_of(area);
-    if (!(twice > extent * slack)) return "has no area; give three points that are not in one line";
+    if (!(twice > extent * slack)) return "has no area: its points lie on a line, or its edges cross; give them in order around it";
     const vec n = {area.x / twice, area.y / twice, area.z / twice};
     for (size_t i = 1; i < count; ++i)
         if (fabs(dot(n, minus(points[i], points[0]))) > slack) return "is not flat; move its points into one plane, or split it into triangles";
@@ -107,6 +107,7 @@ typedef struct hull_search {
     scene_solid_plane *planes;
     uint32_t plane_count;
     double least_depth; // of the body behind any of the planes
+    size_t above, below; // points that ruled out the plane before: they rule out most of those beside it too
 } hull_search;
 
 static int is_known(const hull_search *h, vec n)
@@ -119,23 +120,22 @@ static int is_known(const hull_search *h, vec n)
     return 0;
 }
 
-// The plane through the three points, if all points lie on its one side. BAD: too many planes.
-static int try_plane(hull_search *h, const double *a, vec n)
+static double height_of(const hull_search *h, const double *a, vec n, size_t point)
 {
-    double highest = -INFINITY, lowest = INFINITY;
-    for (size_t i = 0; i < h->count; ++i) {
-        const double height = dot(n, minus(h->points[i], a));
-        highest = fmax(highest, height);
-        lowest = fmin(lowest, height);
-        if (highest > h->slack) return 1;
-    }
-    if (is_known(h, n)) return 1;
+    return dot(n, minus(h->points[point], a));
+}
+
+// The plane, if no point lies above it. 0: too many planes.
+static int take_plane(hull_search *h, const double *a, vec n, double lowest, double highest)
+{
+    if (highest > h->slack || is_known(h, n)) return 1;
     if (h->plane_count == HULL_POINT_PLANES_MOST) return 0;
     h->planes[h->plane_count++] = (scene_solid_plane){{n.x, n.y, n.z}, n.x * a[0] + n.y * a[1] + n.z * a[2] + highest};
     h->least_depth = fmin(h->least_depth, highest - lowest);
     return 1;
 }
 
+// The plane through the three points, either way round, if all points lie on its one side. 0: too many planes.
 static int try_triple(hull_search *h, size_t i, size_t j, size_t k, double sliver)
 {
     const double *a = h->points[i];
@@ -143,7 +143,21 @@ static int try_triple(hull_search *h, size_t i, size_t j, size_t k, double slive
     const double length = length_of(c);
     if (!(length > sliver)) return 1;
     const vec n = {c.x / length, c.y / length, c.z / length}, back = {-n.x, -n.y, -n.z};
-    return try_plane(h, a, n) && try_plane(h, a, back);
+    if (height_of(h, a, n, h->above) > h->slack && height_of(h, a, n, h->below) < -h->slack) return 1;
+    double highest = -INFINITY, lowest = INFINITY;
+    for (size_t p = 0; p < h->count; ++p) {
+        const double height = height_of(h, a, n, p);
+        if (height > highest) {
+            highest = height;
+            h->above = p;
+        }
+        if (height < lowest) {
+            lowest = height;
+            h->below = p;
+        }
+        if (highest > h->slack && lowest < -h->slack) return 1;
+    }
+    return take_plane(h, a, n, lowest, highest) && take_plane(h, a, back, -highest, -lowest);
 }
 
 const char *hull_planes_of_points(const double (*points)[3], size_t count, scene_solid_plane *planes, uint32_t *out_count)

@@ -9,15 +9,14 @@
 #include "name_table.h"
 #include "reader.h"
 
-enum { NODES_MOST = 1 << 24 }; // entries of one list: memory gives out long before
+enum { NODES_MOST = 1 << 24 };   // entries of one list: memory gives out long before
+enum { NAME_BYTES_MOST = 4095 }; // of a part's name with the prefixes of all includes round it
 
 typedef struct json_document { // one file of the scene
-    json_file file;
+    json_file file;     // of json_source.c, shared by all documents of that path
     const char *prefix; // of its names: "" or "house/"
     builder_transform place;
     const struct json_document *above; // that includes it, or NULL
-    char *own_text;                    // NULL: the job's
-    size_t own_bytes;
 } json_document;
 
 typedef struct door_entry {
@@ -31,7 +30,13 @@ typedef struct json_scene {
     buffer door_list; // door_entry
     name_table zones, portals, doors, movers, paths;
     name_table moved;      // movers of doors: the door's place in door_list
-    buffer models;         // of json_models.c
+    buffer sources;        // of json_source.c
+    name_table source_names;         // by path
+    uint64_t parsed_bytes, included_bytes; // of JSON: of different files; of all documents
+    buffer models, meshes;           // of json_models.c
+    name_table model_names, mesh_names; // by path
+    builder_bounds bounds; // of what the builder has so far
+    uint64_t hull_triples; // tried so far
     size_t zones_added;
     uint32_t errors_before; // of the report: one more, and what is wrong has been told
     uint32_t pieces;       // files read, copies made: bounded, because includes multiply
@@ -49,7 +54,6 @@ result entries_read(json_scene *s, const char *list, entry_reader read); // over
 
 // ---- Passes ----
 result documents_load(json_scene *s);  // parses, follows includes of .json
-void documents_free(json_scene *s);
 result geometry_read(json_scene *s);   // other includes, meshes, boxes, walls
 result zones_read(json_scene *s);
 result portals_read(json_scene *s);
@@ -59,10 +63,16 @@ result doors_read(json_scene *s);
 result lights_read(json_scene *s);
 result paths_read(json_scene *s);
 
-// ---- Movers' files, each read once ----
-buffer models_make(const allocator *memory);
+// ---- Files, each read once ----
+typedef struct source_text { const char *bytes; char *own; size_t size; } source_text; // own: to be freed as file_read says, or NULL
+result source_add(json_scene *s, const char *path, source_text text, json_file *out); // parses; path and text stay; frees `own` where it fails
+result source_find(const json_entry *e, const json_node *file, const char *path, json_file *out);
+void sources_open(json_scene *s);
+void sources_free(json_scene *s);
+void models_open(json_scene *s);
 void models_free(json_scene *s);
-result model_find(const json_entry *e, const json_node *file, const scene **out);
+result model_find(const json_entry *e, const json_node *file, const scene **out); // of a mover: a scene of its own
+result mesh_find(const json_entry *e, const json_node *file, const char *path, const scene_builder **out); // static: to be appended
 
 // ---- What the passes share ----
 typedef enum box_side { BOX_OUT, BOX_IN } box_side; // where its faces look
@@ -83,6 +93,7 @@ result entry_refer(const json_entry *e, const json_node *reference, const name_t
 result entry_file(const json_entry *e, const json_node *file, const char **out_path); // relative to the document's file
 result entry_text(const json_entry *e, const json_node *file, const char *path, char **out_text, size_t *out_size); // free as file_read says
 result entry_count_piece(const json_entry *e);
+result entry_room(const json_entry *e, uint64_t size_each, uint32_t copies); // for as many of scene_builder_size each
 result entry_points(const json_node *list, size_t least, size_t most, double (*out)[3], size_t *out_count);
 
 #endif

@@ -11,6 +11,8 @@
 
 enum { HULLS_MOST = 4096, LINE_BYTES = 512, PORTAL_POINTS = 64, JOINED_BYTES = 1024, NESTING_MOST = 64 };
 
+static const uint64_t HULL_TRIPLES_MOST = (uint64_t)1600 * 41664; // of points: each may be a face. 1 to 4 s of work
+
 // ---- Shapes ----
 
 typedef struct zone_shape {
@@ -44,6 +46,9 @@ static result add_hull(const json_entry *e, const json_node *n, zone_shape *s)
     scene_solid_plane planes[HULL_POINT_PLANES_MOST];
     const result done = entry_points(n, HULL_POINTS_LEAST, HULL_POINTS_MOST, points, &count);
     if (done != RESULT_OK) return done;
+    e->scene->hull_triples += (uint64_t)count * (count - 1) * (count - 2) / 6;
+    if (e->scene->hull_triples > HULL_TRIPLES_MOST)
+        return node_fault(n, "over 1,600 hulls of 64 points, or their like, in one scene; use boxes, or fewer points a hull");
     const char *fault = hull_planes_of_points((const double(*)[3])points, count, planes, &plane_count);
     return fault ? node_fault(n, "the hull %s", fault) : shape_add(e, s, planes, plane_count);
 }
@@ -163,6 +168,9 @@ static result refuse_waiting(const json_entry *e)
     const result done = entry_own(e, &e->scene->zones, &own);
     if (done != RESULT_OK || own->number != ZONE_WAITS) return done;
     (void)node_find(&e->node, "in", &in);
+    const char *outer;
+    if (entry_name(e, json_string_value(in.value), &outer) == RESULT_OK && strcmp(outer, own->name) == 0)
+        return node_fault(&in, "the zone '%s' lies in itself; name another zone, or take \"in\" out", own->name);
     return node_fault(&in, "the zone '%s' lies in itself by way of others, or over %d deep; take one \"in\" out", own->name, NESTING_MOST);
 }
 
@@ -209,25 +217,56 @@ static result portal_name(const json_entry *e, const char **out)
     return *out ? RESULT_OK : entry_no_memory(e);
 }
 
+// The point that is farthest outside of the zone: where to look first when the portal does not touch it.
+static result tell_outside(const json_entry *e, const builder_portal *p, size_t side)
+{
+    json_node list, zones;
+    double most = 0;
+    size_t farthest = 0;
+    for (size_t i = 0; i < p->point_count; ++i) {
+        const double outside = scene_builder_outside(e->scene->job->builder, p->zones[side], p->points[i]);
+        if (outside <= most) continue;
+        most = outside;
+        farthest = i;
+    }
+    (void)node_find(&e->node, "points", &list);
+    (void)node_find(&e->node, "zones", &zones);
+    const json_node point = node_item(&list, farthest);
+    return node_fault(&point, "the portal's point lies %.6g m outside of its zone '%s'; move it there, or widen the zone", most,
+                      json_string_value(json_array_get(zones.value, side)));
+}
+
+static result add_portal(const json_entry *e, const builder_portal *portal)
+{
+    static const char *const outside[2] = {"has a point outside of its first zone", "has a point outside of its second zone"};
+    uint32_t number;
+    const char *fault = NULL;
+    const result done = scene_builder_portal(e->scene->job->builder, portal, &number, &fault);
+    for (size_t side = 0; done == RESULT_BAD_INPUT && fault && side < 2; ++side)
+        if (strncmp(fault, outside[side], strlen(outside[side])) == 0) return tell_outside(e, portal, side);
+    return entry_told(e, done, "portal", fault);
+}
+
 static result read_portal(const json_entry *e)
 {
-    static const char *const keys[] = {"name", "zones", "points", "door", NULL};
-    json_node list, door;
-    double points[PORTAL_POINTS][3];
+    static const char *const keys[] = {"name", "zones", "points", "normal", "door", NULL};
+    json_node list, door, towards;
+    double points[PORTAL_POINTS][3], normal[3];
     size_t count = 0;
     builder_portal portal = {.points = (const double(*)[3])points, .door = SCENE_NONE};
     result done = node_object(&e->node, keys);
     if (done == RESULT_OK) done = read_sides(e, portal.zones);
     if (done == RESULT_OK) done = node_need(&e->node, "points", &list);
     if (done == RESULT_OK) done = entry_points(&list, 3, PORTAL_POINTS, points, &count);
+    if (done == RESULT_OK && node_find(&e->node, "normal", &towards)) {
+        done = node_numbers(&towards, 3, normal);
+        portal.normal = normal;
+    }
     if (done == RESULT_OK && node_find(&e->node, "door", &door)) done = entry_refer(e, &door, &e->scene->doors, "door", &portal.door);
     if (done == RESULT_OK) done = portal_name(e, &portal.name);
     if (done != RESULT_OK) return done;
     portal.point_count = (uint32_t)count;
-    uint32_t number;
-    const char *fault = NULL;
-    done = scene_builder_portal(e->scene->job->builder, &portal, &number, &fault);
-    return entry_told(e, done, "portal", fault);
+    return add_portal(e, &portal);
 }
 
 result portals_read(json_scene *s)

@@ -209,11 +209,16 @@ static result take_key(const place *p, map_entity *e)
 
 // ---- Faces ----
 
-static result take_point(const place *p, double out[3])
+static result take_point(const place *p, double out[3], map_word decimals[3])
 {
     if (!take_char(p->m, '(')) return fault(p, "'(' of a point", "a face is three points, a texture and its numbers");
-    const result done = take_numbers(p, MAP_COORDINATE_MOST, out, 3);
-    if (done != RESULT_OK) return done;
+    for (int i = 0; i < 3; ++i) {
+        skip_space(p->m);
+        const char *start = p->m->at;
+        const result done = take_number(p, MAP_COORDINATE_MOST, &out[i]);
+        if (done != RESULT_OK) return done;
+        decimals[i] = (map_word){start, (size_t)(p->m->at - start)};
+    }
     return take_char(p->m, ')') ? RESULT_OK : fault(p, "')' behind three coordinates", "repair the point");
 }
 
@@ -272,7 +277,7 @@ static result take_face(const place *p, map_entity *e)
 {
     map_face face = {.line = p->m->line};
     result done = RESULT_OK;
-    for (int i = 0; i < 3 && done == RESULT_OK; ++i) done = take_point(p, face.points[i]);
+    for (int i = 0; i < 3 && done == RESULT_OK; ++i) done = take_point(p, face.points[i], face.decimals[i]);
     if (done == RESULT_OK) done = take_texture(p, &face.texture);
     if (done == RESULT_OK) done = take_projection(p, &face);
     if (done == RESULT_OK) done = skip_trailing(p);

@@ -17,6 +17,7 @@ typedef enum map_projection { MAP_STANDARD, MAP_VALVE } map_projection;
 
 typedef struct map_face {
     double points[3][3]; // clockwise seen from outside the brush
+    map_word decimals[3][3]; // the same numbers as written: what a double has rounded is rounded once too often for some
     map_word texture;
     map_projection projection;
     double axes[2][3]; // Valve: s and t

@@ -192,9 +192,15 @@ static void draw_capture(renderer *g, const capture_job *j, const picture_slot *
     }
 }
 
+// Layers are counted, and owners found, on geometry.
+static int wants_geometry(const renderer *g)
+{
+    return g->frame.request.mode == RENDER_OVERDRAW || g->frame.request.mode == RENDER_IDS;
+}
+
 void renderer_capture(renderer *g, const render_layout *l, uint32_t zone, const cull_capture *capture)
 {
-    if (!g->frame.open || g->frame.request.mode == RENDER_OVERDRAW) return; // layers are counted on geometry
+    if (!g->frame.open || wants_geometry(g)) return;
     picture_slot *s = slot_find(l, zone, capture->slot);
     if (!s) return;
     frame_flush(g);
@@ -220,7 +226,7 @@ void renderer_show(renderer *g, const render_layout *l, uint32_t zone, const cul
     assert(zone < l->zone_count);
     if (!g->frame.open) return;
     const picture_slot *s = slot_find(l, zone, picture->slot);
-    if (!s || !s->filled || g->frame.request.mode == RENDER_OVERDRAW) {
+    if (!s || !s->filled || wants_geometry(g)) {
         renderer_draw(g, l, zone, picture->runs, picture->run_count);
         return;
     }

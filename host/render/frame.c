@@ -13,25 +13,31 @@ void frame_state_pass(renderer *g, blend blend, depth_writes depth)
     const frame_request *q = &g->frame.request;
     const int culled = q->faces == FACES_FRONT && !g->scene.has_two_sided;
     const int added = q->mode == RENDER_OVERDRAW;
+    if (q->mode == RENDER_IDS) { // as in id_picture.c, where back faces are dropped by fragments
+        state_pass(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, BACK_DRAWN, OFFSET_NONE});
+        return;
+    }
     state_pass(g, &(pass_state){added ? GL_ALWAYS : GL_GREATER, added ? DEPTH_OFF : depth, COLOUR_ON, added ? BLEND_ADD : blend,
                                 culled && depth == DEPTH_ON ? BACK_CULLED : BACK_DRAWN, OFFSET_FARTHER});
 }
 
 static uint32_t variant_of(const renderer *g, const draw_pass *p)
 {
-    const int by_fragment = g->frame.request.faces == FACES_FRONT && g->scene.has_two_sided;
+    const frame_request *q = &g->frame.request;
+    const int by_fragment = q->faces == FACES_FRONT && (g->scene.has_two_sided || q->mode == RENDER_IDS);
     return g->scene.variant | (by_fragment ? VARIANT_SIDES : 0) | (p->planes ? VARIANT_CLIP : 0);
 }
 
 GLuint frame_pass(renderer *g, const draw_pass *p, uint32_t wanted)
 {
     const render_mode mode = g->frame.request.mode;
-    const GLuint program = program_find(g, PROGRAM_SHADED + (program_kind)mode, variant_of(g, p));
+    const program_kind kind = mode == RENDER_IDS ? PROGRAM_ID : PROGRAM_SHADED + (program_kind)mode;
+    const GLuint program = program_find(g, kind, variant_of(g, p));
     if (!program) return 0;
     state_program(g, program);
     viewpoint_set(p->view, program, wanted);
     poses_use(g, p->view->eye);
-    glProgramUniform1f(program, AT_ALPHA, wanted ? TRANSLUCENT_ALPHA : 1);
+    if (mode != RENDER_IDS) glProgramUniform1f(program, AT_ALPHA, wanted ? TRANSLUCENT_ALPHA : 1);
     if (mode == RENDER_DEPTH) {
         const double near_m = g->frame.view.near_m, far_m = 2 * scene_radius_m(g->scene.scene) + near_m * 2;
         glProgramUniform2f(program, AT_DEPTH_RANGE, (float)near_m, (float)far_m);
@@ -57,7 +63,9 @@ static void clear(renderer *g)
 {
     const GLfloat far = 0, none[4] = {0};
     state_pass(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, BACK_DRAWN, OFFSET_NONE});
-    glClearBufferfv(GL_COLOR, 0, g->frame.request.mode == RENDER_SHADED ? BACKGROUND : none);
+    const GLuint nobody[4] = {0};
+    if (g->frame.request.mode == RENDER_IDS) glClearBufferuiv(GL_COLOR, 0, nobody);
+    else glClearBufferfv(GL_COLOR, 0, g->frame.request.mode == RENDER_SHADED ? BACKGROUND : none);
     glClearBufferfv(GL_DEPTH, 0, &far);
 }
 
@@ -70,7 +78,7 @@ result renderer_begin(renderer *g, const frame_request *q, report *r)
     const result seen = viewpoint_make(g, &from, r, &f->view);
     if (seen != RESULT_OK) return seen;
     f->layers = NULL;
-    f->target = target_find(g, TARGET_COLOUR, q->width_px, q->height_px, r);
+    f->target = target_find(g, q->mode == RENDER_IDS ? TARGET_ID : TARGET_COLOUR, q->width_px, q->height_px, r);
     if (f->target && q->mode == RENDER_OVERDRAW) f->layers = target_find(g, TARGET_LAYERS, q->width_px, q->height_px, r);
     if (!f->target || (q->mode == RENDER_OVERDRAW && !f->layers)) return RESULT_NO_GL;
     f->request = *q;
@@ -105,6 +113,7 @@ void renderer_end(renderer *g)
     frame_flush(g);
     translucent_draw(g);
     if (g->frame.request.mode == RENDER_OVERDRAW) draw_heat(g);
+    if (g->frame.request.mode == RENDER_IDS) g->id_target = g->frame.target;
     g->frame.open = 0;
     glFinish();
     gl_check(g, NULL, "ending a frame");
@@ -137,6 +146,7 @@ result renderer_read(renderer *g, uint8_t *rgba, report *r)
 {
     const target *t = g->frame.target;
     if (!t || g->frame.open) return report_error(r, NULL, 0, "a picture read before renderer_end; end the frame first");
+    if (t->kind != TARGET_COLOUR) return report_error(r, NULL, 0, "colours read from a picture of ids; use renderer_read_ids");
     state_framebuffer(g, t->framebuffer, t->width_px, t->height_px);
     glReadPixels(0, 0, (GLsizei)t->width_px, (GLsizei)t->height_px, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
     flip_rows(rgba, t->width_px, t->height_px);

@@ -241,6 +241,7 @@ typedef struct test_queue {
     uint32_t capacity, free;
     uint32_t latency;   // in calls of renderer_collect for the zone
     uint32_t by_driver; // 1: ready when the fences say so, whatever the latency
+    uint32_t is_lost;   // the driver left a fence unanswered: nothing is waited for any more
 } test_queue;
 
 result tests_reserve(renderer *g, uint32_t tests_a_step);

@@ -125,3 +125,14 @@ result renderer_id_picture(renderer *g, const id_request *q, report *r, id_pictu
     gl_check(g, r, "drawing an id picture");
     return g->errors == errors ? RESULT_OK : RESULT_NO_GL;
 }
+
+result renderer_read_ids(renderer *g, uint32_t *triangles, float *depths, report *r)
+{
+    const target *t = g->id_target;
+    if (!t || g->frame.open) return report_error(r, NULL, 0, "ids read without a picture of them; draw one first");
+    state_framebuffer(g, t->framebuffer, t->width_px, t->height_px);
+    const GLsizei width = (GLsizei)t->width_px, height = (GLsizei)t->height_px;
+    if (triangles) glReadPixels(0, 0, width, height, GL_RED_INTEGER, GL_UNSIGNED_INT, triangles);
+    if (depths) glReadPixels(0, 0, width, height, GL_DEPTH_COMPONENT, GL_FLOAT, depths);
+    return gl_check(g, r, "reading ids");
+}

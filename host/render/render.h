@@ -69,7 +69,9 @@ result render_layout_open(renderer *g, const render_layout_zone *zones, uint32_t
 result render_layout_reorder(render_layout *l, uint32_t zone, const uint32_t *items, report *r);
 void render_layout_close(render_layout *l); // NULL is fine; before the renderer
 
-typedef enum render_mode { RENDER_SHADED, RENDER_ITEMS, RENDER_ZONES, RENDER_DEPTH, RENDER_OVERDRAW } render_mode;
+// RENDER_IDS is for checks, not for people: owners as an id picture has them, drawn through the layout. Nothing that is
+// translucent is in it, and no picture of a culler: what one would show is drawn.
+typedef enum render_mode { RENDER_SHADED, RENDER_ITEMS, RENDER_ZONES, RENDER_DEPTH, RENDER_OVERDRAW, RENDER_IDS } render_mode;
 
 typedef enum render_scissor { SCISSOR_NONE, SCISSOR_ZONES } render_scissor; // ZONES: what a zone draws is cut to its rectangle
 
@@ -84,7 +86,8 @@ typedef struct frame_request {
 result renderer_begin(renderer *g, const frame_request *q, report *r); // target, clear
 // Runs of places in the zone's order. Opaque now or by the next call that needs it, translucent at renderer_end.
 void renderer_draw(renderer *g, const render_layout *l, uint32_t zone, const cull_run *runs, uint32_t run_count);
-void renderer_draw_movers(renderer *g, const render_layout *l, const uint32_t *movers, uint32_t count); // those at or over scene.mover_count have no geometry
+// Those at or over scene.mover_count have no geometry.
+void renderer_draw_movers(renderer *g, const render_layout *l, const uint32_t *movers, uint32_t count);
 // Least x, least y, greatest x, greatest y in -1 .. 1, for what the zone draws from now on in this frame; with
 // SCISSOR_ZONES only. Cut a pixel wider. Where several zones list an item and one draws it for all, its rectangle must
 // hold theirs.
@@ -93,6 +96,10 @@ void renderer_end(renderer *g);    // translucent items of all runs drawn, then 
 uint32_t renderer_draw_calls(const renderer *g);   // since renderer_begin
 uint32_t renderer_state_changes(const renderer *g);
 result renderer_read(renderer *g, uint8_t *rgba, report *r); // width * height * 4, top row first, after renderer_end
+// Right after renderer_id_picture, or renderer_end of RENDER_IDS: each pixel's owner (global triangle + 1, 0: nothing) and
+// its depth, bottom row first. The same triangle has the same depth in both, to the bit. Of two at one depth an id picture
+// has the lower, a frame the one drawn first. triangles or depths may be NULL; width * height of the picture each.
+result renderer_read_ids(renderer *g, uint32_t *triangles, float *depths, report *r);
 
 // ---- What cullers ask for ----
 

@@ -28,7 +28,7 @@ static void note(renderer *g, const layout_runs *r, uint32_t place)
 void translucent_note(renderer *g, const layout_runs *r)
 {
     const uint32_t *see_through = r->layout->see_through;
-    if (!see_through) return;
+    if (!see_through || r->layout->g->frame.request.mode == RENDER_IDS) return;
     const uint32_t from = layout_first_place(r->layout, r->zone);
     for (uint32_t i = 0; i < r->count; ++i) {
         const uint32_t first = from + r->runs[i].first, end = first + r->runs[i].count;

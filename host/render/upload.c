@@ -363,7 +363,13 @@ GLuint scene_vertex_array(const renderer *g, GLuint elements)
 static result fits_driver(const scene *s, report *r)
 {
     GLint64 block = 0;
+    GLint in_vertices = 0;
     glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block);
+    glGetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &in_vertices); // GL 4.5 lets a driver have none
+    if (s->mover_count && in_vertices < 1) {
+        report_error(r, s->path, 0, "%u movers; this driver gives vertex shaders no storage block to move them by, so use another driver", s->mover_count);
+        return RESULT_NO_GL;
+    }
     if ((GLint64)(s->index_count / 3) * 4 <= block) return RESULT_OK;
     report_error(r, s->path, 0, "%u triangles; this driver numbers %lld at most, so split the scene", s->index_count / 3, (long long)block / 4);
     return RESULT_NO_GL;

@@ -1,7 +1,7 @@
 // The order of items: a k-d tree by medians (Bentley 1975), whose cuts fall on multiples of 16^k so that every leaf is full.
+// SPDX-License-Identifier: MIT
 // The items are sorted once along each axis; a cut then only divides two lists by a mark, keeping their order, so the
 // time is O(n log n) on any input.
-// SPDX-License-Identifier: MIT
 #include "index.h"
 
 #include <string.h>

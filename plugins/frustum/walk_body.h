@@ -1,10 +1,11 @@
-// The walk down the tree, included by one source file per instruction set, which defines before:
+// The walk down the tree, included by one source file per instruction set.
+// SPDX-License-Identifier: MIT
+// That file defines before:
 //   uint32_t block_touch(const float *block, const walk_plane *planes, uint32_t which)
 //   void block_split(const float *block, const walk_plane *planes, uint32_t which, walk_split *out)
 //   uint32_t block_facing(const float *faces, const float eye[4], float reach)
 //   uint32_t *put16(uint32_t bits, uint32_t base, uint32_t shift, uint32_t *out): base + (b << shift) of each set bit b
 // All sums are taken in one order, unfused: the sets are equal bit for bit.
-// SPDX-License-Identifier: MIT
 //
 // Invariant: items are met in ascending order, and what is written is the places where visibility changes. Taken in
 // pairs these are the runs as (first, end), so runs of neighbouring subtrees join by themselves.

@@ -63,6 +63,17 @@ holds 'nothing was written' test ! -e out.json
 expect 'no command' 2 'no command' "$portcullis" frobnicate
 expect 'bad size' 2 'WxH' "$portcullis" bench good.obj --views auto:2 --size 12
 expect 'no such zone' 2 'zones of this scene' "$portcullis" bench good.obj --views auto:2 --zone kitchen=none
+expect 'no such zone, by name' 2 "there is no zone 'kitchen'; the zones of this scene are: all" "$portcullis" bench good.obj --views auto:2 --zone kitchen=none
+expect 'no zone before the sign' 2 "'=none': write NAME=CHAIN" "$portcullis" bench good.obj --views auto:2 --zone =none
+expect 'seed too large' 2 'whole number from 0 to 18446744073709551614' "$portcullis" generate city -s 18446744073709551615 -o city.boxes
+printf '{"portcullis": 1, "boxes": [{"min": [0,0,0], "max": [1,1,1]}], "zones": [{"name": "hall", "chain": "nothing"}]}' > chain.json
+expect 'a culler of the file that is not there' 2 "^chain.json: error: zone 'hall': no culler 'nothing'; found: " "$portcullis" bench chain.json --views auto:2 --culler scene
+sed 's/nothing/brute[depth=3]/' chain.json > option.json
+expect 'an option of the file that is not there' 2 "^option.json: error: zone 'hall': .*has no option 'depth'" "$portcullis" bench option.json --views auto:2 --culler scene
+tab="$(printf 'tab\there.json')"
+expect 'a name with a tab' 0 '' "$portcullis" generate maze -n 10 -o "$tab"
+expect 'a scene whose name has a tab' 0 'zones +10' "$portcullis" info "$tab"
+expect 'a name that is not UTF-8' 2 'not UTF-8' "$portcullis" generate maze -n 10 -o "$(printf 'b\377d.json')"
 expect 'a zone named twice' 2 'already' "$portcullis" bench good.obj --views auto:2 --zone all=none --zone all=brute
 expect 'unwritable result, told first' 2 'nowhere/out.json: error: cannot be written' "$portcullis" bench missing.obj --views auto:2 --json nowhere/out.json
 expect 'unwritable picture, told first' 2 'nowhere/out.png: error: cannot be written' "$portcullis" render missing.obj --views auto:2 -o nowhere/out.png

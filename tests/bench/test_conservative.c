@@ -54,7 +54,8 @@ static uint64_t finer_misses(fixture *f, const bench_request *q, const char *cha
     assert_int_equal(truth_open(&request, q->services->memory, &f->report, &t), RESULT_OK);
     for (uint32_t v = 0; v < q->path->count; ++v) {
         strategy_view view;
-        assert_int_equal(strategy_run_view(&s, &(strategy_request){.view = v, .mode = RENDER_SHADED, .marks = MARK_DRAWN}, &f->report, &view), RESULT_OK);
+        assert_int_equal(strategy_run_view(&s, &(strategy_request){.view = v, .mode = RENDER_SHADED, .marks = MARK_DRAWN}, &f->report, &view),
+                         RESULT_OK);
         assert_int_equal(truth_add_finer(&t, f->g, &q->path->cameras[v], &shifted, &f->report), RESULT_OK);
         assert_int_equal(truth_add_finer(&t, f->g, &q->path->cameras[v], &larger, &f->report), RESULT_OK);
         misses += strategy_misses(&s, &t, 2 * v).items + strategy_misses(&s, &t, 2 * v + 1).items;

@@ -73,7 +73,8 @@ static result go(way *w)
     const bench_request q = {.scene = w->scene, .path = &w->views, .plugins = w->plugins, .services = &services, .repeat = 1,
                              .width_px = WIDTH, .height_px = HEIGHT};
     const chain_spec *const *const sets[CHAINS_MOST] = {w->sets[0], w->sets[1], w->sets[2]};
-    const bench_strategy_request chains = {.name = "way", .chain = &w->specs[0], .sets = sets, .set_count = w->q->chain_count, .swap_views = w->q->swap_views};
+    const bench_strategy_request chains = {
+        .name = "way", .chain = &w->specs[0], .sets = sets, .set_count = w->q->chain_count, .swap_views = w->q->swap_views};
     if (done == RESULT_OK) done = strategy_open(&q, &chains, NULL, &w->lines.report, &w->strategy);
     if (done == RESULT_OK) done = cull_views(w, &q);
     strategy_close(&w->strategy);

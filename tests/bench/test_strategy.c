@@ -41,7 +41,8 @@ static void fixture_open(fixture *f)
         for (int z = 0; z < ZONES; ++z) f->by_zone[i][z] = &f->specs[i];
         f->sets[i] = f->by_zone[i];
     }
-    f->bench = (bench_request){.scene = f->scene, .path = &f->path, .plugins = f->plugins, .services = &f->services, .repeat = 1, .width_px = 320, .height_px = 180};
+    f->bench = (bench_request){
+        .scene = f->scene, .path = &f->path, .plugins = f->plugins, .services = &f->services, .repeat = 1, .width_px = 320, .height_px = 180};
     f->chains = (bench_strategy_request){.name = "test", .chain = &f->specs[0], .sets = f->sets, .set_count = CHAINS};
 }
 

@@ -111,6 +111,14 @@ sed '/"name": "doorway"/s/, 5\]/, 4]/g' "$rooms" >"$work/half.json" # a portal o
 picture "$work/half.json" 0 "$work/whole.png"
 picture "$work/half.json" 0 "$work/cut.png" --scissor
 is 'what stands beside a portal is cut' "$(cmp -s "$work/whole.png" "$work/cut.png"; echo $?)" 1
+missed() { # SCENE words: what the error picture of view 0 says is missed
+  scene=$1
+  shift
+  "$portcullis" render "$scene" --views path:walk --view 0 --mode error --culler frustum+testportal --size 320x180 -o "$work/error.png" "$@" 2>&1 |
+    sed -n 's/^.* \([0-9]*\) missed pixels$/\1/p'
+}
+is 'rectangles cut nothing that is seen' "$(missed "$rooms" --scissor)" 0
+true_that 'what is cut away is missed too' "$(missed "$work/half.json" --scissor) > $(missed "$work/half.json")"
 "$portcullis" render "$rooms" --views path:walk --view 20 --mode error --size 320x180 --culler frustum -o "$work/error.png" >"$work/error" 2>&1
 is 'nothing missed in the error picture' "$(grep -c '^.*0 missed pixels$' "$work/error")" 1
 finish

@@ -57,9 +57,13 @@ void stage_make(stage *s, const char *kind, uint64_t size)
 
 const chain_spec *stage_chain(stage *s, const char *text)
 {
+    for (uint32_t i = 0; i < s->spec_count; i++)
+        if (strcmp(s->specs[i].text, text) == 0) return s->specs[i].spec;
     chain_spec *out = arena_push(&s->texts, 1, sizeof *out);
-    assert_non_null(out);
+    const char *copy = arena_text(&s->texts, text, strlen(text));
+    assert_true(out && copy && s->spec_count < STAGE_CHAINS_MOST);
     if (chain_parse(text, &s->texts, &s->lines.report, out) != RESULT_OK) fail_msg("'%s' is no chain", text);
+    s->specs[s->spec_count++] = (stage_spec){copy, out};
     return out;
 }
 

@@ -9,6 +9,9 @@
 #include "tests/common/report_lines.h"
 #include "tests/common/scratch_folder.h"
 
+enum { STAGE_CHAINS_MOST = 32 };
+typedef struct stage_spec { const char *text; const chain_spec *spec; } stage_spec;
+
 typedef struct stage {
     failing_allocator counted; // of the world, its cullers and views, nothing else
     report_lines lines;
@@ -19,6 +22,8 @@ typedef struct stage {
     loader *plugins;
     world *world;
     world_view *view;
+    stage_spec specs[STAGE_CHAINS_MOST]; // parsed so far
+    uint32_t spec_count;
 } stage;
 
 typedef enum tier { TIER_SHORT, TIER_LONG } tier;

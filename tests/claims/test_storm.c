@@ -39,7 +39,8 @@ static void place_anew(storm *s, uint32_t i)
     const scene_extent *e = &s->stage.scene->whole;
     const float *least = &e->box.min.x, *most = &e->box.max.x;
     for (int k = 0; k < 3; k++) {
-        s->middles[i][k] = e->origin[k] + random_between(&s->random, (double)least[k] - 2, (double)most[k] + 2);
+        const double out_m = k == 1 ? 0.5 : 2; // some beside the rooms, some over and under them
+        s->middles[i][k] = e->origin[k] + random_between(&s->random, (double)least[k] - out_m, (double)most[k] + out_m);
         s->speeds[i][k] = random_between(&s->random, -0.06, 0.06);
     }
     s->sizes[i] = random_between(&s->random, 0.05, i % 1000 == 0 ? 40 : i % 50 == 0 ? 8 : 0.5); // some larger than a room

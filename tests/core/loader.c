@@ -131,6 +131,32 @@ static void the_first_folder_wins(void **state)
     assert_int_equal(count, 0); // the second was not even looked at
 }
 
+static void one_file_by_two_paths_is_one(void **state)
+{
+    fixture *f = *state;
+    char link[512], wanted[512], folder[512];
+    uint32_t count;
+    scratch_folder_name(&f->folder, "linked.culler.so", link, sizeof link);
+    assert_int_equal(symlink(more_of("_first", wanted, sizeof wanted), link), 0);
+    snprintf(folder, sizeof folder, "%s_first/../%s_first", TEST_PLUGINS, strrchr(TEST_PLUGINS, '/') + 1);
+    open_at(f, (places){.folders = {TEST_PLUGINS "_first", folder, f->folder.path}});
+    assert_int_equal(loader_scan(f->plugins, &f->lines.report), RESULT_OK);
+    assert_string_equal(loaded(f, "testmore")->path, wanted);
+    assert_int_equal(loader_libraries_open(f->plugins), 1);
+    (void)loader_refusals(f->plugins, &count);
+    assert_int_equal(count, 0);
+    loader_close(f->plugins);
+    open_at(f, (places){.folders = {REFUSED_PLUGINS, REFUSED_PLUGINS "/.", REFUSED_PLUGINS}});
+    assert_int_equal(loader_scan(f->plugins, &f->lines.report), RESULT_OK);
+    (void)loader_refusals(f->plugins, &count);
+    loader_close(f->plugins);
+    uint32_t once;
+    open_at(f, (places){.folders = {REFUSED_PLUGINS}});
+    assert_int_equal(loader_scan(f->plugins, &f->lines.report), RESULT_OK);
+    (void)loader_refusals(f->plugins, &once);
+    assert_int_equal(count, once);
+}
+
 static void an_explicit_file_wins_over_the_folders(void **state)
 {
     fixture *f = *state;
@@ -333,6 +359,7 @@ int main(void)
         TEST(only_the_named_library_is_opened),
         TEST(a_culler_in_a_library_of_another_name_is_found),
         TEST(the_first_folder_wins),
+        TEST(one_file_by_two_paths_is_one),
         TEST(an_explicit_file_wins_over_the_folders),
         TEST(a_bad_library_does_not_hide_a_good_one_behind_it),
         TEST(the_current_folder_is_never_searched),

@@ -61,11 +61,11 @@ void maze_piece(maze *m, const double at[3])
     assert_int_equal(scene_builder_item(m->builder, &item), RESULT_OK);
 }
 
-static uint32_t zone_add(maze *m, const builder_hull *hull, uint32_t parent)
+static uint32_t zone_add(maze *m, const builder_hull *hulls, uint32_t count, uint32_t parent)
 {
     char name[16];
     snprintf(name, sizeof name, "z%u", m->item_zone++);
-    const builder_zone z = {.name = name, .hulls = hull, .hull_count = hull ? 1 : 0, .parent = parent};
+    const builder_zone z = {.name = name, .hulls = hulls, .hull_count = count, .parent = parent};
     uint32_t zone;
     const char *fault = NULL;
     if (scene_builder_zone(m->builder, &z, &zone, &fault) != RESULT_OK) fail_msg("the zone %s %s", name, fault ? fault : "has no memory");
@@ -82,28 +82,45 @@ uint32_t maze_wedge(maze *m, const scene_solid_plane *planes, uint32_t count, co
         for (int k = 0; k < 3; k++) world[i].distance += world[i].normal[k] * m->pose.move[k];
     }
     maze_piece(m, inside);
-    return zone_add(m, &(builder_hull){world, count}, SCENE_NONE);
+    return zone_add(m, &(builder_hull){world, count}, 1, SCENE_NONE);
 }
 
-uint32_t maze_box(maze *m, const double low[3], const double high[3], uint32_t parent)
+static void part_planes(const maze *m, const maze_part *p, scene_solid_plane planes[6])
 {
-    scene_solid_plane planes[6];
     for (int i = 0; i < 6; i++) {
         const double sign = i < 3 ? 1 : -1;
         double normal[3] = {0, 0, 0};
         normal[i % 3] = sign;
         turned(&m->pose, normal, planes[i].normal);
-        planes[i].distance = i < 3 ? high[i] : -low[i - 3];
+        planes[i].distance = i < 3 ? p->high[i] : -p->low[i - 3];
         for (int k = 0; k < 3; k++) planes[i].distance += planes[i].normal[k] * m->pose.move[k];
     }
-    const double middle[3] = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2};
-    maze_piece(m, middle);
-    return zone_add(m, &(builder_hull){planes, 6}, parent);
+}
+
+uint32_t maze_union(maze *m, const maze_part *parts, uint32_t count, uint32_t parent)
+{
+    scene_solid_plane planes[8][6];
+    builder_hull hulls[8];
+    assert_true(count <= 8);
+    for (uint32_t i = 0; i < count; i++) {
+        const double *low = parts[i].low, *high = parts[i].high;
+        const double middle[3] = {(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, (low[2] + high[2]) / 2};
+        maze_piece(m, middle);
+        part_planes(m, &parts[i], planes[i]);
+        hulls[i] = (builder_hull){planes[i], 6};
+    }
+    return zone_add(m, hulls, count, parent);
+}
+
+uint32_t maze_box(maze *m, const double low[3], const double high[3], uint32_t parent)
+{
+    const maze_part part = {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+    return maze_union(m, &part, 1, parent);
 }
 
 uint32_t maze_everywhere(maze *m)
 {
-    return zone_add(m, NULL, SCENE_NONE);
+    return zone_add(m, NULL, 0, SCENE_NONE);
 }
 
 uint32_t maze_portal(maze *m, uint32_t a, uint32_t b, const double (*points)[3], uint32_t count)

@@ -28,6 +28,8 @@ typedef struct maze {
 
 void maze_begin(maze *m, const pose *p);
 uint32_t maze_box(maze *m, const double low[3], const double high[3], uint32_t parent);
+typedef struct maze_part { double low[3], high[3]; } maze_part;
+uint32_t maze_union(maze *m, const maze_part *parts, uint32_t count, uint32_t parent); // a zone of several hulls
 uint32_t maze_wedge(maze *m, const scene_solid_plane *planes, uint32_t count, const double inside[3]); // planes in the maze's own frame
 uint32_t maze_everywhere(maze *m);
 uint32_t maze_portal(maze *m, uint32_t a, uint32_t b, const double (*points)[3], uint32_t count);

@@ -4,6 +4,7 @@
 // can have, and planes are evaluated on it plainly in float, like a culler does.
 #include "tests/flow/oracle.h"
 
+#include "host/core/zone_seam.h"
 #include "tests/common/random.h"
 
 #include <portcullis/plane.h>
@@ -36,15 +37,33 @@ static span hull_span(const scene *s, uint32_t hull, const ray *r)
     return out;
 }
 
-// Where the ray leaves the zone, portals apart: through its hull, or into a zone that lies in it. One hull a zone here.
+// Where the ray leaves the union of the zone's hulls that it is in at `start`; one begins where another ends, or a seam off.
+static double hulls_end(const scene *s, const scene_zone *z, const ray *r, double start, double seam)
+{
+    double end = -INFINITY, before;
+    for (uint32_t h = z->first_hull; h < z->first_hull + z->hull_count; h++) {
+        const span in = hull_span(s, h, r);
+        if (in.in <= start + seam && in.out >= start - seam) end = fmax(end, in.out);
+    }
+    if (end == -INFINITY) return start;
+    do {
+        before = end;
+        for (uint32_t h = z->first_hull; h < z->first_hull + z->hull_count; h++) {
+            const span in = hull_span(s, h, r);
+            if (in.in < in.out && in.in <= end + seam) end = fmax(end, in.out);
+        }
+    } while (end > before);
+    return end;
+}
+
+// Where the ray leaves the zone, portals apart: through its hulls, or into a zone that lies in it.
 static double zone_end(const scene *s, uint32_t zone, const ray *r, double start, double seam)
 {
     const scene_zone *z = &s->zones[zone];
-    double end = INFINITY;
-    if (z->hull_count > 0) end = hull_span(s, z->first_hull, r).out;
-    for (uint32_t i = 0; i < s->zone_count; i++) {
-        if (s->zones[i].parent != zone || s->zones[i].hull_count == 0) continue;
-        const span in = hull_span(s, s->zones[i].first_hull, r);
+    double end = z->hull_count > 0 ? hulls_end(s, z, r, start, seam) : INFINITY;
+    for (uint32_t h = 0; h < s->hull_count; h++) {
+        if (s->zones[s->hulls[h].zone].parent != zone) continue;
+        const span in = hull_span(s, h, r);
         if (in.in < in.out && in.out > start + seam && in.in < end) end = fmax(in.in, start);
     }
     return end;
@@ -159,9 +178,9 @@ static int holds(const scene *s, uint32_t zone, const double p[3])
     const scene_zone *z = &s->zones[zone];
     if (z->flags & ZONE_STRAY) return 0;
     const double rounding = 1e-6; // metres: an eye on a border is on both its sides
-    if (z->hull_count > 0 && scene_hull_height(s, z->first_hull, p) > rounding) return 0;
-    for (uint32_t i = 0; i < s->zone_count; i++)
-        if (s->zones[i].parent == zone && s->zones[i].hull_count > 0 && scene_hull_height(s, s->zones[i].first_hull, p) < -rounding) return 0;
+    if (z->hull_count > 0 && zone_height(s, zone, p) > rounding) return 0;
+    for (uint32_t h = 0; h < s->hull_count; h++)
+        if (s->zones[s->hulls[h].zone].parent == zone && scene_hull_height(s, h, p) < -rounding) return 0;
     return 1;
 }
 

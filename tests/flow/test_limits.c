@@ -74,6 +74,7 @@ static void the_seventeenth_volume_of_a_zone_merges_them_and_the_zone_behind_see
             assert_int_equal(v->way, SCENE_NONE);
             assert_int_equal(v->parent, SCENE_NONE);
         }
+        for (uint32_t i = 0; i < r.volume_count; i++) assert_int_equal(r.volumes[i].is_merged, r.volumes[i].zone == 1 && count > FLOW_ZONE_VOLUMES);
         assert_non_null(maze_find(&r, 2));
         expect_seen(&m, &c, &r, 2000);
         maze_close(&m);

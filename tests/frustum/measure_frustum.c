@@ -1,7 +1,7 @@
-// Measures brute and frustum on a city of boxes: ns a box, medians over views and passes, strategies interleaved
-// pass by pass.
-// usage: measure_frustum FILE.boxes FILE.views [PASSES]
+// Measures brute and frustum on a city of boxes.
 // SPDX-License-Identifier: MIT
+// Told: ns a box, medians over views and passes, strategies interleaved pass by pass.
+// usage: measure_frustum FILE.boxes FILE.views [PASSES]
 #define _POSIX_C_SOURCE 200809L
 #include "fixture.h"
 

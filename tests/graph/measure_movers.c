@@ -1,7 +1,8 @@
-// Measures what a mover costs: ns of CPU time for each small move, teleport, removal with adding, point to zone, and
-// move of a box larger than all rooms, the median over passes, in grids of rooms on open ground.
-// usage: measure_movers [MOVERS [PASSES]]
+// Measures what a mover costs in grids of rooms on open ground.
 // SPDX-License-Identifier: MIT
+// Told: ns of CPU time for each small move, teleport, removal with adding, point to zone, and move of a box larger than all
+// rooms, the median over passes.
+// usage: measure_movers [MOVERS [PASSES]]
 #define _POSIX_C_SOURCE 200809L
 #include "fixture.h"
 

@@ -43,7 +43,7 @@ static void text_that_is_not_json_is_told_where_it_stops_being_so(void **state)
     expect(HEAD BOX "} more", "t.json:2:46: error: not JSON: end of file expected near 'more'; correct it");
     expect(HEAD "\"n\xc3\xbc\": tru}", "t.json:2:7: error: not JSON: invalid token near 'tru'; correct it"); // two bytes, one column
     expect(HEAD "\"name\": \"a\", \"name\": \"b\"}", "t.json:2:14: error: not JSON: duplicate object key near '\"name\"'; correct it");
-    expect(HEAD "\"name\": \"\\u0000\"}", "t.json:2:9: error: not JSON: \\u0000 is not allowed without JSON_ALLOW_NUL near '\"\\u0000\"'; correct it");
+    expect(HEAD "\"name\": \"\\u0000\"}", "t.json:2:9: error: a text holds \\u0000, which no name can; take it out");
 }
 
 static void the_format_is_asked_for_first(void **state)
@@ -53,7 +53,7 @@ static void the_format_is_asked_for_first(void **state)
     expect("{}", "t.json:1:1: error: 'portcullis' is missing; begin with {\"portcullis\": 1, ...} if this is a scene");
     expect("{\"portcullis\": 2}", "t.json:1:16: error: /portcullis: format 2; this reader knows format 1");
     expect("{\"portcullis\": \"1\"}", "t.json:1:16: error: /portcullis: a text, where a number belongs");
-    expect("{\"portcullis\": 1}", "t.json: error: no polygon to draw; the scene is empty or holds tool surfaces only");
+    expect("{\"portcullis\": 1}", "t.json: error: no polygon to draw; add \"meshes\", \"boxes\", \"walls\" or \"movers\"");
 }
 
 static void an_unknown_key_is_named_with_what_was_meant(void **state)
@@ -85,7 +85,9 @@ static void a_wall_that_is_no_flat_convex_polygon_is_refused(void **state)
 {
     (void)state;
     expect(HEAD "\"walls\": [{\"points\": [[0,0,0],[1,0,0],[2,0,0]]}]}",
-           "t.json:2:22: error: /walls/0/points: the wall has no area; give three points that are not in one line");
+           "t.json:2:22: error: /walls/0/points: the wall has no area: its points lie on a line, or its edges cross; give them in order around it");
+    expect(HEAD "\"walls\": [{\"points\": [[0,0,0],[1,1,0],[1,0,0],[0,1,0]]}]}", // a bow-tie
+           "t.json:2:22: error: /walls/0/points: the wall has no area: its points lie on a line, or its edges cross; give them in order around it");
     expect(HEAD "\"walls\": [{\"points\": [[0,0,0],[1,0,0],[1,1,0],[0,1,0.1]]}]}",
            "t.json:2:22: error: /walls/0/points: the wall is not flat; move its points into one plane, or split it into triangles");
     expect(HEAD "\"walls\": [{\"points\": [[0,0,0],[2,0,0],[0.5,0.5,0],[0,2,0]]}]}",
@@ -121,6 +123,19 @@ static void zones_that_overlap_are_warned_of(void **state)
     scene_free(s, allocator_heap());
 }
 
+static void a_zone_apart_from_the_one_it_lies_in_is_warned_of(void **state)
+{
+    (void)state;
+    static const char text[] = HEAD BOX ",\n\"zones\": [{\"name\": \"a\", \"box\": [[0,0,0],[1,1,1]]}, {\"name\": \"b\", \"box\": [[3,0,0],[4,1,1]], \"in\": \"a\"}]}";
+    heard h;
+    report r = hear(&h);
+    scene *s = NULL;
+    assert_int_equal(import_json("t.json", text, sizeof text - 1, &doors_open, NULL, allocator_heap(), &r, &s), RESULT_OK);
+    assert_int_equal(r.warnings, 1);
+    assert_string_equal(h.text, "t.json: warning: the zone \"b\" is said to lie in \"a\" but does not touch it; move it there, or take \"in\" out");
+    scene_free(s, allocator_heap());
+}
+
 static void names_of_zones_are_unique_known_and_not_in_a_ring(void **state)
 {
     (void)state;
@@ -132,6 +147,8 @@ static void names_of_zones_are_unique_known_and_not_in_a_ring(void **state)
           "t.json:3:75: error: /zones/1/in: there is no zone 'hal'; did you mean 'hall'?");
     zones("{\"name\": \"a\", \"in\": \"b\"}, {\"name\": \"b\", \"box\": [[0,0,0],[1,1,1]], \"in\": \"a\"}",
           "t.json:3:31: error: /zones/0/in: the zone 'a' lies in itself by way of others, or over 64 deep; take one \"in\" out");
+    zones("{\"name\": \"a\", \"box\": [[0,0,0],[1,1,1]], \"in\": \"a\"}",
+          "t.json:3:57: error: /zones/0/in: the zone 'a' lies in itself; name another zone, or take \"in\" out");
     zones("{\"name\": \"a\"}, {\"name\": \"b\"}", "t.json:3:26: error: /zones/1: the zone is the second without a hull; one zone may be everywhere");
     zones("{\"name\": \"a\", \"chain\": \"frustum[\"}", "t.json:3:34: error: /zones/0/chain: chain 'frustum[', at character 9: an option's name is missing; "
                                                          "write it like octree[leaf=64]+occlusion");
@@ -141,7 +158,7 @@ static void a_portal_that_is_not_flat_is_refused(void **state)
 {
     (void)state;
     portal("{\"zones\": [\"a\",\"b\"], \"points\": [[1,0,0],[1,0,1],[1,1,1],[1.01,1,0]]}",
-           "t.json:4:13: error: /portals/0: the portal is not flat: a point lies over 1 mm off the plane of the others; correct it");
+           "t.json:4:13: error: /portals/0: the portal is not flat: a point lies over 1/2000 of its width off the plane of the others; correct it");
 }
 
 static void a_portal_that_is_not_convex_is_refused(void **state)
@@ -155,7 +172,9 @@ static void a_portal_of_zero_area_is_refused(void **state)
 {
     (void)state;
     portal("{\"zones\": [\"a\",\"b\"], \"points\": [[1,0,0],[1,0,1],[1,0,0.5]]}",
-           "t.json:4:13: error: /portals/0: the portal has no area: its points lie on a line; correct it");
+           "t.json:4:13: error: /portals/0: the portal has no area: its points lie on a line, or its edges cross; correct it");
+    portal("{\"zones\": [\"a\",\"b\"], \"points\": [[1,0,0],[1,1,1],[1,0,1],[1,1,0]]}", // a bow-tie
+           "t.json:4:13: error: /portals/0: the portal has no area: its points lie on a line, or its edges cross; correct it");
     portal("{\"zones\": [\"a\",\"b\"], \"points\": [[1,0,0],[1,0,1]]}", "t.json:4:44: error: /portals/0/points: 2 values; write at least 3");
 }
 
@@ -178,7 +197,9 @@ static void a_portal_away_from_its_zones_or_to_no_door_is_refused(void **state)
 {
     (void)state;
     portal("{\"zones\": [\"a\",\"b\"], \"points\": [[5,0,0],[5,0,1],[5,1,1]]}",
-           "t.json:4:13: error: /portals/0: the portal has a point over 1/64 m outside of its first zone; correct it");
+           "t.json:4:45: error: /portals/0/points/0: the portal's point lies 4 m outside of its zone 'a'; move it there, or widen the zone");
+    portal("{\"zones\": [\"a\",\"b\"], \"points\": [[1,0,0],[1,0,1],[1,1.25,1]]}",
+           "t.json:4:61: error: /portals/0/points/2: the portal's point lies 0.25 m outside of its zone 'a'; move it there, or widen the zone");
     portal("{\"zones\": [\"a\",\"b\"], \"points\": [[1,0,0],[1,0,1],[1,1,1]], \"door\": \"front\"}",
            "t.json:4:79: error: /portals/0/door: there is no door 'front'; correct the name or add it");
 }
@@ -217,6 +238,25 @@ static void a_door_and_its_mover_belong_to_each_other_alone(void **state)
           "t.json:5:63: error: /doors/1/mover: another door has the mover 'm' already; give each a mover of its own");
     mover("\"at\": [1,0,0]}],\n\"doors\": [{\"name\": \"d\", \"mover\": \"leaf\"}]", "t.json:5:34: error: /doors/0/mover: there is no mover 'leaf'; correct the name or add it");
     mover("\"at\": [1,0,0]}],\n\"doors\": [{\"name\": \"d\", \"open\": \"yes\"}]", "t.json:5:33: error: /doors/0/open: a text, where true or false belongs");
+}
+
+static void a_mover_that_leaves_the_world_is_refused(void **state)
+{
+    (void)state;
+    static const char path[] = "t.json:3:12: error: /movers/0: the mover's path leads beyond 1e9 m; keep it nearer to the scene's origin";
+    static const char leaf[] = "t.json:5:11: error: /doors/0: the door has a leaf that lies beyond 1e9 m, shut or open; keep it nearer to the scene's origin";
+    mover("\"path\": [{\"time\": 0}, {\"time\": 1, \"at\": [0, 1e9, 0]}]}]", path);
+    mover("\"pivot\": [-1e9, 0, 0], \"path\": [{\"time\": 0, \"turn\": [0, 180, 0]}]}]", path);
+    mover("\"open\": [0, 0, 1e9]}],\n\"doors\": [{\"name\": \"d\", \"mover\": \"m\", \"open\": false}]", leaf);
+}
+
+static void a_portals_normal_is_three_numbers_off_its_plane(void **state)
+{
+    (void)state;
+    portal("{\"zones\": [\"a\",\"b\"], \"points\": [[1,0,0],[1,0,1],[1,1,1]], \"normal\": [1,0]}",
+           "t.json:4:81: error: /portals/0/normal: 2 values; write 3 numbers");
+    portal("{\"zones\": [\"a\",\"b\"], \"points\": [[1,0,0],[1,0,1],[1,1,1]], \"normal\": [0,1,0]}",
+           "t.json:4:13: error: /portals/0: the portal has a normal that lies in its plane; correct it");
 }
 
 static void lights_and_views_are_checked(void **state)
@@ -330,6 +370,7 @@ int main(void)
         cmocka_unit_test(a_wall_that_is_no_flat_convex_polygon_is_refused),
         cmocka_unit_test(an_empty_zone_is_refused),
         cmocka_unit_test(zones_that_overlap_are_warned_of),
+        cmocka_unit_test(a_zone_apart_from_the_one_it_lies_in_is_warned_of),
         cmocka_unit_test(names_of_zones_are_unique_known_and_not_in_a_ring),
         cmocka_unit_test(a_portal_that_is_not_flat_is_refused),
         cmocka_unit_test(a_portal_that_is_not_convex_is_refused),
@@ -340,6 +381,8 @@ int main(void)
         cmocka_unit_test(a_mover_with_nan_is_refused_however_it_is_written),
         cmocka_unit_test(a_movers_shape_and_path_are_checked),
         cmocka_unit_test(a_door_and_its_mover_belong_to_each_other_alone),
+        cmocka_unit_test(a_mover_that_leaves_the_world_is_refused),
+        cmocka_unit_test(a_portals_normal_is_three_numbers_off_its_plane),
         cmocka_unit_test(lights_and_views_are_checked),
         cmocka_unit_test(a_missing_file_is_told_where_it_is_named),
         cmocka_unit_test(a_fault_in_an_included_file_is_told_there),

@@ -148,7 +148,7 @@ static void a_scene_file_is_chosen_by_its_ending(void **state)
     report r = hear(&h);
     scene *s = NULL;
     assert_int_equal(import_scene("level.bsp", &doors_open, allocator_heap(), &r, &s), RESULT_BAD_INPUT);
-    assert_string_equal(h.text, "level.bsp: error: unknown kind of scene; the name must end in .json, .map, .obj, .ply, .off, .stl or .boxes");
+    assert_string_equal(h.text, "level.bsp: error: unknown kind of scene; the name must end in .pcs, .json, .map, .obj, .ply, .off, .stl or .boxes");
     assert_int_equal(import_scene(".map", &doors_open, allocator_heap(), &r, &s), RESULT_BAD_INPUT);
     assert_int_equal(import_scene("no/such/file.MAP", &doors_open, allocator_heap(), &r, &s), RESULT_BAD_INPUT);
     assert_non_null(strstr(h.text, "no/such/file.MAP: error: cannot open it"));

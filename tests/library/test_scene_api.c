@@ -8,6 +8,7 @@
 #include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
+#include <stdio.h>
 #include <string.h>
 
 static const double hall_crate[3] = {1.5, 1, 4}, kitchen_crate[3] = {14.5, 1, 4};
@@ -172,6 +173,23 @@ static void what_cannot_be_opened_is_told_in_one_line(void **state)
     assert_int_equal(cull_scene_cull(b->view, &c, &seen), CULL_ERR_OPTION);
 }
 
+static void a_chain_of_the_file_that_cannot_be_is_told_with_file_and_zone(void **state)
+{
+    api_bed *b = *state;
+    static const char text[] = "{\"portcullis\": 1, \"boxes\": [{\"min\": [0,0,0], \"max\": [1,1,1]}], \"zones\": [{\"name\": \"attic\", \"chain\": \"nosuch\"}]}";
+    char path[512], line[640];
+    cull_scene *none = NULL;
+    scratch_folder_name(&b->folder, "wrong.json", path, sizeof path);
+    scratch_folder_write(&b->folder, "wrong.json", text, sizeof text - 1);
+    assert_int_equal(cull_scene_open(path, &b->options, &none), CULL_ERR_OPTION);
+    assert_null(none);
+    snprintf(line, sizeof line, "%s: error: zone 'attic': no culler 'nosuch'; found: ", path);
+    assert_non_null(strstr(b->log, line));
+    const char *end = strchr(b->log, '\n');
+    assert_non_null(end);
+    assert_int_equal(end[1], 0); // one line
+}
+
 static void a_swap_of_another_scene_is_refused(void **state)
 {
     api_bed *b = *state;
@@ -253,6 +271,7 @@ int main(void)
         IN_BED(movers_are_seen_where_they_are),
         IN_BED(explanations_name_door_and_zone),
         IN_BED(what_cannot_be_opened_is_told_in_one_line),
+        IN_BED(a_chain_of_the_file_that_cannot_be_is_told_with_file_and_zone),
         IN_BED(a_swap_of_another_scene_is_refused),
         IN_BED(fields_that_mean_nothing_yet_must_be_zero),
         IN_BED(four_views_in_two_threads_see_what_one_sees_alone),

@@ -26,7 +26,8 @@ int main(int argc, char **argv)
     unsigned long at[4], different = 0;
     if (argc != 7 || !picture_read(argv[1], &a) || !picture_read(argv[2], &b)) return 2;
     for (int i = 0; i < 4; ++i) at[i] = strtoul(argv[3 + i], NULL, 10);
-    if (a.image.width != b.image.width || a.image.height != b.image.height || at[0] + at[2] > a.image.width || at[1] + at[3] > a.image.height) return 2;
+    if (a.image.width != b.image.width || a.image.height != b.image.height || at[0] + at[2] > a.image.width || at[1] + at[3] > a.image.height)
+        return 2;
     for (unsigned long y = at[1]; y < at[1] + at[3]; ++y)
         for (unsigned long x = at[0]; x < at[0] + at[2]; ++x)
             different += memcmp(a.rgba + 4 * (y * a.image.width + x), b.rgba + 4 * (y * a.image.width + x), 4) != 0;

@@ -25,6 +25,19 @@ expect 'the same view without a window' 0 '' "$portcullis" render "$scene" --vie
 same 'the window shows what is rendered without one' still alone
 press 'tc.c.c.c.' swapped
 same 'other cullers of the zone show the same' swapped still
+press 'tcccccccc' round
+same 'round all of them' round still
+chosen() { expect "cullers $1" 0 '^$' xvfb-run -a -s '-screen 0 1024x768x24' "$portcullis" view "$scene" --views path: --size 640x360 --doors shut --keys "$1" -o "$work/$2.png" \
+    --culler frustum --culler none --culler 'frustum[isa=plain]'; }
+words_same() { holds "$1" "$same_region" "$work/$2.png" "$work/$3.png" 0 330 400 30; }
+words_differ() { holds "$1" sh -c '"$1" "$2" "$3" 0 330 400 30 >"$4"; test $? = 1' sh "$same_region" "$work/$2.png" "$work/$3.png" "$words"; }
+chosen 'tc....' one
+chosen 'tcc...' two
+chosen 'tccc..' three
+chosen 'tcccc.' four
+words_differ 'C goes through the cullers that were named' one two
+words_differ 'one after the other' two three
+holds 'back to the chain of the file and on' sh -c '"$1" "$2" "$3" 0 330 400 30 >"$4" || "$1" "$2" "$5" 0 330 400 30 >"$4"' sh "$same_region" "$work/four.png" "$work/one.png" "$words" "$work/two.png"
 press 'to..' opened
 differs 'the door in front opens' opened still
 press 'too.' shut

@@ -63,16 +63,16 @@ static void each_bad_portal_is_refused_with_its_fault(void **state)
         {nan, 3, {w, e}, SCENE_NONE, NULL, "has a number that is not finite"},
         {infinite, 3, {w, e}, SCENE_NONE, NULL, "has a number that is not finite"},
         {far, 3, {w, e}, SCENE_NONE, NULL, "has a coordinate beyond 1e9 m"},
-        {line, 3, {w, e}, SCENE_NONE, NULL, "has no area: its points lie on a line"},
-        {point, 3, {w, e}, SCENE_NONE, NULL, "has no area: its points lie on a line"},
-        {bent, 4, {w, e}, SCENE_NONE, NULL, "is not flat: a point lies over 1 mm off the plane of the others"},
+        {line, 3, {w, e}, SCENE_NONE, NULL, "has no area: its points lie on a line, or its edges cross"},
+        {point, 3, {w, e}, SCENE_NONE, NULL, "has no area: its points lie on a line, or its edges cross"},
+        {bent, 4, {w, e}, SCENE_NONE, NULL, "is not flat: a point lies over 1/2000 of its width off the plane of the others"},
         {dent, 5, {w, e}, SCENE_NONE, NULL, "is not convex"},
         {star, 5, {w, e}, SCENE_NONE, NULL, "is not convex"},
         {twice, 5, {w, e}, SCENE_NONE, NULL, "has a point twice"},
         {round_twice, 8, {w, e}, SCENE_NONE, NULL, "has a point twice"},
-        {in_west, 4, {w, e}, SCENE_NONE, NULL, "has a point over 1/64 m outside of its second zone"},
-        {in_west, 4, {e, r.open}, SCENE_NONE, NULL, "has a point over 1/64 m outside of its first zone"},
-        {above, 4, {r.open, w}, SCENE_NONE, NULL, "has a point over 1/64 m outside of its second zone"},
+        {in_west, 4, {w, e}, SCENE_NONE, NULL, "has a point outside of its second zone, by over 1/64 of its width"},
+        {in_west, 4, {e, r.open}, SCENE_NONE, NULL, "has a point outside of its first zone, by over 1/64 of its width"},
+        {above, 4, {r.open, w}, SCENE_NONE, NULL, "has a point outside of its second zone, by over 1/64 of its width"},
         {across, 4, {w, e}, SCENE_NONE, NULL, "lies so that its sides cannot be told apart; give it a normal towards its first zone"},
         {good, 4, {w, e}, SCENE_NONE, along, "has a normal that lies in its plane"},
         {good, 4, {w, e}, SCENE_NONE, none, "has a normal that lies in its plane"},
@@ -104,7 +104,7 @@ static void a_portal_that_is_a_little_off_is_taken(void **state)
     for (uint32_t i = 0; i < 3; ++i) {
         const builder_portal p = {
             .name = "off", .points = portals[i].points, .point_count = portals[i].count, .zones = {r.west, r.east}, .door = SCENE_NONE};
-        assert_int_equal(scene_builder_portal(f->builder, &p, &id, &fault), RESULT_OK);
+        if (scene_builder_portal(f->builder, &p, &id, &fault) != RESULT_OK) fail_msg("portal %u %s", i, fault);
         assert_int_equal(id, i);
     }
     put_triangle(f, 1);
@@ -112,6 +112,88 @@ static void a_portal_that_is_a_little_off_is_taken(void **state)
     assert_int_equal(f->scene->portal_count, 3);
     assert_int_equal(f->scene->zones[r.east].portal_count, 3);
     assert_int_equal(f->scene->zones[r.inner].portal_count, 0);
+}
+
+// A house x 0 .. 8 in the open or in a hall; the hole in its face x = 0 lies `depth` deep.
+typedef enum hole_size { HOLE_SMALL, HOLE_WHOLE_FACE } hole_size;
+static result sunk_hole(builder_fixture *f, uint32_t in_a_hall, double depth, hole_size size, const char **fault)
+{
+    uint32_t outer, house, id;
+    builder_fixture_restart(f);
+    if (in_a_hall) assert_int_equal(add_box_zone(f->builder, "hall", &(zone_box){{-9, -9, -9}, {20, 9, 9}}, SCENE_NONE, &outer), RESULT_OK);
+    else assert_int_equal(add_everywhere(f->builder, "open", &outer), RESULT_OK);
+    assert_int_equal(add_box_zone(f->builder, "house", &(zone_box){{0, 0, 0}, {8, 3, 4}}, in_a_hall ? outer : SCENE_NONE, &house), RESULT_OK);
+    door_hole hole = {depth, {0.5, 1}, {2.5, 3}, {house, outer}};
+    if (size == HOLE_WHOLE_FACE) hole = (door_hole){depth, {0, 0}, {3, 4}, {outer, house}};
+    return add_hole(f->builder, &hole, &id, fault);
+}
+
+static void a_portal_that_lies_deep_in_a_zone_which_the_other_is_about_is_refused(void **state)
+{
+    builder_fixture *f = *state;
+    const char *fault;
+    for (uint32_t in_a_hall = 0; in_a_hall < 2; ++in_a_hall) {
+        assert_int_equal(sunk_hole(f, in_a_hall, 0.25, HOLE_SMALL, &fault), RESULT_BAD_INPUT);
+        assert_string_equal(fault, "lies inside its first zone, by over 1/64 of its width");
+        assert_int_equal(sunk_hole(f, in_a_hall, 0.25, HOLE_WHOLE_FACE, &fault), RESULT_BAD_INPUT); // all its points lie on faces
+        assert_string_equal(fault, "lies inside its second zone, by over 1/64 of its width");
+        assert_int_equal(sunk_hole(f, in_a_hall, 0.03, HOLE_SMALL, &fault), RESULT_OK);
+        assert_int_equal(sunk_hole(f, in_a_hall, 0, HOLE_WHOLE_FACE, &fault), RESULT_OK);
+        assert_int_equal(sunk_hole(f, in_a_hall, -0.03, HOLE_SMALL, &fault), RESULT_OK);
+    }
+}
+
+static void a_portal_between_two_hulls_of_a_zone_leads_nowhere_outside_and_is_refused(void **state)
+{
+    builder_fixture *f = *state;
+    uint32_t open, house, id;
+    const char *fault;
+    scene_solid_plane planes[2][6];
+    box_planes(&(zone_box){{0, 0, 0}, {4, 3, 4}}, planes[0]);
+    box_planes(&(zone_box){{4, 0, 0}, {8, 3, 4}}, planes[1]);
+    const builder_hull hulls[2] = {{planes[0], 6}, {planes[1], 6}};
+    const builder_zone zone = {.name = "house", .hulls = hulls, .hull_count = 2, .parent = SCENE_NONE};
+    assert_int_equal(add_everywhere(f->builder, "open", &open), RESULT_OK);
+    assert_int_equal(scene_builder_zone(f->builder, &zone, &house, &fault), RESULT_OK);
+    static const double seam[4][3] = {{4, 1, 1}, {4, 2, 1}, {4, 2, 2}, {4, 1, 2}}, normal[3] = {1, 0, 0};
+    const builder_portal p = {.name = "seam", .points = seam, .point_count = 4, .zones = {house, open}, .door = SCENE_NONE, .normal = normal};
+    assert_int_equal(scene_builder_portal(f->builder, &p, &id, &fault), RESULT_BAD_INPUT);
+    assert_string_equal(fault, "lies inside its first zone, by over 1/64 of its width");
+}
+
+static void a_portal_in_what_two_zones_side_by_side_have_in_common_is_taken(void **state)
+{
+    builder_fixture *f = *state;
+    uint32_t a, b, id;
+    const char *fault;
+    assert_int_equal(add_box_zone(f->builder, "a", &(zone_box){{0, 0, 0}, {5, 4, 4}}, SCENE_NONE, &a), RESULT_OK);
+    assert_int_equal(add_box_zone(f->builder, "b", &(zone_box){{3, 0, 0}, {8, 4, 4}}, SCENE_NONE, &b), RESULT_OK);
+    assert_int_equal(add_hole(f->builder, &(door_hole){4, {0, 0}, {4, 4}, {a, b}}, &id, &fault), RESULT_OK);
+}
+
+// Of rooms of all sizes: what is off by a share of a portal's width is taken, or refused, at every scale.
+static void portals_are_judged_the_same_at_every_scale(void **state)
+{
+    builder_fixture *f = *state;
+    const double offsets[4] = {0, 0.01, -0.01, 0.1}; // of the rooms' 4 m
+    for (double scale = 1e-4; scale < 2e4; scale *= 10)
+        for (int far = 0; far < 2; ++far)
+            for (int i = 0; i < 4; ++i) {
+                builder_fixture_restart(f);
+                const builder_transform t = {{{scale, 0, 0, far * 1e6}, {0, scale, 0, 0}, {0, 0, scale, 0}}};
+                assert_int_equal(scene_builder_transform(f->builder, &t), RESULT_OK);
+                const rooms r = add_rooms(f);
+                uint32_t id;
+                const char *fault;
+                const result expected = offsets[i] == 0.1 ? RESULT_BAD_INPUT : RESULT_OK;
+                assert_int_equal(add_hole(f->builder, &(door_hole){4 + offsets[i], {1, 1}, {2, 2}, {r.west, r.east}}, &id, &fault), expected);
+                assert_int_equal(add_hole(f->builder, &(door_hole){7 + offsets[i], {1, 1}, {2, 2}, {r.inner, r.east}}, &id, &fault), expected);
+                static const double bent[4][3] = {{4, 1, 1}, {4.001, 2, 1}, {4, 2, 2}, {4.001, 1, 2}}, wrong[4][3] = {{4, 1, 1}, {4.004, 2, 1}, {4, 2, 2}, {4.004, 1, 2}};
+                builder_portal p = {.name = "bent", .points = bent, .point_count = 4, .zones = {r.west, r.east}, .door = SCENE_NONE};
+                assert_int_equal(scene_builder_portal(f->builder, &p, &id, &fault), RESULT_OK);
+                p.points = wrong;
+                assert_int_equal(scene_builder_portal(f->builder, &p, &id, &fault), RESULT_BAD_INPUT);
+            }
 }
 
 static double plane_at(const scene_portal *p, const double at[3])
@@ -228,7 +310,7 @@ static void whatever_points_come_a_portal_is_refused_or_sound(void **state)
     for (uint32_t i = 0; i < taken; ++i) {
         const scene_portal *p = &f->scene->portals[i];
         assert_true(plane_at(p, west) > 1.9);
-        for (uint32_t c = 0; c < p->point_count; ++c) assert_true(fabs(plane_at(p, f->scene->portal_points[p->first_point + c])) <= 1.001e-3);
+        for (uint32_t c = 0; c < p->point_count; ++c) assert_true(fabs(plane_at(p, f->scene->portal_points[p->first_point + c])) <= 2e-3); // of a size of under 2 m
     }
 }
 
@@ -353,6 +435,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(each_bad_portal_is_refused_with_its_fault),
         TEST(a_portal_that_is_a_little_off_is_taken),
+        TEST(a_portal_that_lies_deep_in_a_zone_which_the_other_is_about_is_refused),
+        TEST(a_portal_between_two_hulls_of_a_zone_leads_nowhere_outside_and_is_refused),
+        TEST(a_portal_in_what_two_zones_side_by_side_have_in_common_is_taken),
+        TEST(portals_are_judged_the_same_at_every_scale),
         TEST(the_sides_are_found_whatever_order_points_and_zones_come_in),
         TEST(the_sides_are_found_in_a_turned_and_scaled_scene_too),
         TEST(whatever_points_come_a_portal_is_refused_or_sound),

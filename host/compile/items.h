@@ -1,0 +1,77 @@
+// What the files of the last stage share: the builder that is filled, vertices rounded once, triangles of loops.
+// SPDX-License-Identifier: MIT
+// Invariant: a vertex of the mesh is rounded in one place, to the scene's own step; whoever uses it has the same point.
+#ifndef PORTCULLIS_HOST_COMPILE_ITEMS_H
+#define PORTCULLIS_HOST_COMPILE_ITEMS_H
+
+#include "compile.h"
+#include "plane_table.h"
+
+typedef struct item_job {
+    const compile_input *in;
+    const compiled_zones *zones;
+    const allocator *memory;
+    report *report;
+    scene_builder *builder;
+    uint32_t *material_of; // of the input's, in the builder
+    uint32_t *mover_of;    // by entity; SCENE_NONE
+    uint32_t *door_of;     // by entity; SCENE_NONE
+    buffer points, triangles, counts, loop; // builder_vertex, uint32_t (twice), uint32_t: of one item
+} item_job;
+
+// Unit normal and offset in metres, inside where dot + offset >= 0.
+void item_plane(const item_job *j, plane_ref ref, double out[4]);
+int item_exact_plane(const item_job *j, plane_ref ref, cull_exact_plane *out); // 0: over 63 bits
+void item_texcoord(const compile_face *face, const double metres[3], float out[2]);
+int item_object_name(const item_job *j, uint32_t entity, char *out, size_t size); // its length
+
+// Brush entities as items and movers, bodies, places, lights (items_entities.c).
+result items_entities(item_job *j);
+
+// ---- Vertices rounded to the step that the scene will have (items_round.c) ----
+
+typedef struct rounded_mesh {
+    const allocator *memory;
+    int32_t (*points)[3];  // of the mesh's vertices, steps of the scene from its origin
+    uint32_t *same_as;     // by vertex: the least vertex that is rounded to the same point
+    uint32_t vertex_count;
+} rounded_mesh;
+// All vertices and portals are in the builder.
+result rounded_mesh_make(const item_job *j, rounded_mesh *out);
+void rounded_mesh_free(rounded_mesh *m); // of zeros is fine
+
+// ---- Triangles of one loop (items_triangulate.c) ----
+
+typedef struct loop_corner {
+    uint32_t vertex;      // of the mesh, see rounded_mesh.same_as
+    uint32_t place;       // in the polygon's loop
+    uint32_t sides[2];    // of the convex polygon that it lies on: before and after; the same: inside of a side
+    uint32_t before, after;
+    double width;         // of its ear, square steps; at most 0: turned over or flat when rounded
+} loop_corner;
+
+typedef struct loop_triangulator {
+    const compile_input *in;
+    const compile_mesh *mesh;
+    const rounded_mesh *rounded;
+    buffer corners; // loop_corner
+    buffer counts;  // uint32_t: corners left on each side
+} loop_triangulator;
+
+loop_triangulator loop_triangulator_make(const item_job *j, const rounded_mesh *rounded);
+void loop_triangulator_free(loop_triangulator *t);
+// Places in the polygon's loop: its true corners, in order, to `loop`; three a triangle to `triangles`. Both are emptied before.
+result loop_triangulate(loop_triangulator *t, const compile_polygon *p, buffer *loop, buffer *triangles);
+
+// ---- The checks (items_check.c): of the mesh and the scene, by other means than made them ----
+
+typedef struct check_input {
+    const item_job *job;
+    const rounded_mesh *rounded;
+    const uint32_t *triangles; // 3 vertices of the mesh each, of the polygons that are items, liquids left out
+    size_t triangle_count;
+    const uint8_t *is_item;    // by polygon of the mesh
+} check_input;
+result items_check(const check_input *c, compile_checks *out); // adds open edges, T-junctions, degenerate triangles
+
+#endif

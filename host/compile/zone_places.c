@@ -1,0 +1,120 @@
+// Where point entities stand: in a region of air, in the void, or in a wall.
+// SPDX-License-Identifier: MIT
+#include "zone_trace.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#define UNITS_A_METRE 32.0
+#define NUDGE_UNITS 1.0 // an entity that stands on a floor or against a wall is looked for this far off it too
+
+static int32_t on_grid(double steps)
+{
+    const double most = CULL_GRID_MOST;
+    return (int32_t)floor((steps > most ? most : steps > -most ? steps : -most) + 0.5);
+}
+
+void zone_place_point(const compile_input *in, const compile_entity *e, int32_t out[3])
+{
+    for (int k = 0; k < 3; ++k) out[k] = on_grid(e->origin[k] * in->steps_per_metre);
+}
+
+// Up first: most stand on a floor. Off a wall never into the void: that would be a leak that isn't there.
+static result place(const compile_input *in, zone_trace *t, const compile_entity *e, uint32_t *region)
+{
+    static const int32_t ways[][3] = {{0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {0, -1, 0}};
+    const double nudge = NUDGE_UNITS * in->steps_per_metre / UNITS_A_METRE;
+    int32_t point[3];
+    zone_place_point(in, e, point);
+    result r = region_of_point(&t->regions, &t->rays, point, region);
+    for (size_t i = 0; i < sizeof(ways) / sizeof(ways[0]) && r == RESULT_OK && *region == REGION_SOLID; ++i) {
+        int32_t by[3];
+        for (int k = 0; k < 3; ++k) by[k] = on_grid(point[k] + ways[i][k] * nudge);
+        r = region_of_point(&t->regions, &t->rays, by, region);
+        if (*region == REGION_VOID) *region = REGION_SOLID;
+    }
+    return r;
+}
+
+static void number_zones(zone_places *p)
+{
+    uint32_t next = 0;
+    for (uint32_t i = 0; i < p->region_count; ++i) p->zone_of[i] = ZONE_NONE;
+    for (uint32_t e = 0; e < p->entity_count; ++e) {
+        const uint32_t region = p->region_of[e];
+        if (region < p->region_count && p->zone_of[region] == ZONE_NONE) p->zone_of[region] = next++;
+    }
+    for (uint32_t i = 0; i < p->region_count; ++i)
+        if (p->zone_of[i] == ZONE_NONE) p->zone_of[i] = next++;
+}
+
+result zone_places_make(const compile_input *in, zone_trace *t, const allocator *memory, zone_places *out)
+{
+    zone_places p = {.memory = memory, .entity_count = in->entity_count, .region_count = t->regions.region_count, .leaking = ZONE_NONE};
+    p.region_of = memory_alloc(memory, p.entity_count, sizeof(uint32_t));
+    p.zone_of = memory_alloc(memory, p.region_count, sizeof(uint32_t));
+    result r = p.region_of && p.zone_of ? RESULT_OK : RESULT_NO_MEMORY;
+    for (uint32_t e = 0; e < in->entity_count && r == RESULT_OK; ++e) {
+        p.region_of[e] = REGION_NOT_PLACED;
+        if (!in->entities[e].has_origin || in->entities[e].brush_count) continue;
+        r = place(in, t, &in->entities[e], &p.region_of[e]);
+        if (p.region_of[e] == REGION_VOID && p.leaking == ZONE_NONE) p.leaking = e;
+    }
+    if (r == RESULT_OK) number_zones(&p);
+    *out = p;
+    if (r != RESULT_OK) zone_places_free(out);
+    return r;
+}
+
+void zone_places_free(zone_places *p)
+{
+    if (!p->memory) return;
+    memory_free(p->memory, p->region_of, p->entity_count, sizeof(uint32_t));
+    memory_free(p->memory, p->zone_of, p->region_count, sizeof(uint32_t));
+    p->memory = NULL;
+}
+
+// ---- Names ----
+
+static const char *value_of(const compile_entity *e, const char *key)
+{
+    for (uint32_t i = 0; i < e->key_count; ++i)
+        if (strcmp(e->keys[2 * i], key) == 0) return e->keys[2 * i + 1];
+    return NULL;
+}
+
+static const char *copied(arena *memory, const char *text)
+{
+    return arena_text(memory, text, strlen(text));
+}
+
+static result tell(compiled_zones *z, compiled_zone *zone, const compile_entity *info)
+{
+    const char *name = value_of(info, "name"), *chain = value_of(info, "chain");
+    if (!name) name = info->name;
+    if (name && !zone->name && !(zone->name = copied(&z->memory, name))) return RESULT_NO_MEMORY;
+    if (chain && !zone->chain && !(zone->chain = copied(&z->memory, chain))) return RESULT_NO_MEMORY;
+    return RESULT_OK;
+}
+
+result zone_places_name(const compile_input *in, const zone_places *p, compiled_zones *z)
+{
+    for (uint32_t e = 0; e < in->entity_count; ++e) {
+        const uint32_t region = p->region_of[e];
+        if (region == REGION_NOT_PLACED || (!z->leak && region >= p->region_count)) continue;
+        compiled_zone *zone = &z->zones[z->leak ? 0 : p->zone_of[region]];
+        zone->entity_count++;
+        if (strcmp(in->entities[e].class_name, "zone_info") != 0) continue;
+        const result r = tell(z, zone, &in->entities[e]);
+        if (r != RESULT_OK) return r;
+    }
+    for (uint32_t i = 0; i < z->zone_count; ++i) {
+        char text[32];
+        snprintf(text, sizeof(text), "zone %u", i);
+        if (!z->zones[i].name && !(z->zones[i].name = copied(&z->memory, text))) return RESULT_NO_MEMORY;
+        z->zones_sealed += z->zones[i].entity_count == 0;
+        z->zones[i].is_outside = z->leak;
+    }
+    return RESULT_OK;
+}

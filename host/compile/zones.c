@@ -1,0 +1,228 @@
+// Zones of the mesh: portals tried, those that separate nothing left out, regions of air made zones, or one open zone of
+// a map that leaks.
+// SPDX-License-Identifier: MIT
+#include "zone_trace.h"
+
+#include <assert.h>
+
+enum { LIFT_PERCENT = 25 }; // a door that moves up and down and takes more of a room's floor is a lift
+
+typedef struct zone_build {
+    const compile_input *in;
+    const allocator *memory;
+    report *report;
+    portal_set portals;
+    zone_trace trace;
+    zone_places places;
+    uint8_t *seals; // by polygon of the mesh; NULL: liquids bound nothing
+} zone_build;
+
+// ---- Portals that are none ----
+
+typedef struct floor_box { double min[2], max[2]; } floor_box; // x, z
+
+static void floor_of(const zone_trace *t, uint32_t region, floor_box *out)
+{
+    *out = (floor_box){{1e300, 1e300}, {-1e300, -1e300}};
+    for (uint32_t f = 0; f < t->shells.face_count; ++f) {
+        if (t->shells.shell_of[f] == SHELL_NONE || zone_trace_region(t, f) != region) continue;
+        const surface_polygon *p = surface_polygon_at(&t->s, f >> 1);
+        for (int k = 0; k < 2; ++k) {
+            if (p->min[2 * k] < out->min[k]) out->min[k] = p->min[2 * k];
+            if (p->max[2 * k] > out->max[k]) out->max[k] = p->max[2 * k];
+        }
+    }
+}
+
+static int is_lift(const zone_trace *t, const surface_polygon *p, uint32_t region)
+{
+    const cull_wide_plane *plane = plane_table_canonical(t->s.planes, p->plane);
+    if (cull_magnitude(plane->normal[1]) <= cull_magnitude(plane->normal[0]) || cull_magnitude(plane->normal[1]) <= cull_magnitude(plane->normal[2])) return 0;
+    floor_box room;
+    floor_of(t, region, &room);
+    const double own = (p->max[0] - p->min[0]) * (p->max[2] - p->min[2]), all = (room.max[0] - room.min[0]) * (room.max[1] - room.min[1]);
+    return 100 * own > LIFT_PERCENT * all;
+}
+
+// 1 when the polygon parts two regions of air, and so that it is worth it.
+static int separates(const zone_trace *t, const portal_piece *piece, uint32_t polygon)
+{
+    const uint32_t front = zone_trace_region(t, 2 * polygon), back = zone_trace_region(t, 2 * polygon + 1);
+    if (front == back || front == REGION_VOID || back == REGION_VOID) return 0;
+    const surface_polygon *p = surface_polygon_at(&t->s, polygon);
+    return !piece->is_door || (!is_lift(t, p, front) && !is_lift(t, p, back));
+}
+
+// A piece stays when any part of it separates; the count of those that don't.
+static uint32_t reject_portals(zone_build *b)
+{
+    portal_piece *pieces = b->portals.pieces.items;
+    uint32_t rejected = 0;
+    for (size_t i = 0; i < b->portals.pieces.count; ++i)
+        if (pieces[i].is_rejected == 0) pieces[i].is_rejected = 2; // until shown otherwise
+    for (uint32_t i = 0; i < surface_polygon_count(&b->trace.s); ++i) {
+        const surface_polygon *p = surface_polygon_at(&b->trace.s, i);
+        if (p->kind == SURFACE_PORTAL && pieces[p->source].is_rejected == 2 && separates(&b->trace, &pieces[p->source], i))
+            pieces[p->source].is_rejected = 0;
+    }
+    for (size_t i = 0; i < b->portals.pieces.count; ++i) {
+        rejected += pieces[i].is_rejected == 2;
+        pieces[i].is_rejected = pieces[i].is_rejected != 0;
+    }
+    return rejected;
+}
+
+static result trace_again(zone_build *b, const compile_mesh *mesh)
+{
+    const trace_input from = {b->in, mesh, &b->portals, b->seals};
+    zone_trace_free(&b->trace);
+    return zone_trace_make(&from, b->memory, &b->trace);
+}
+
+// Ends: each round but the last rejects a piece.
+static result trace_until_settled(zone_build *b, const compile_mesh *mesh)
+{
+    result r = trace_again(b, mesh);
+    while (r == RESULT_OK && reject_portals(b)) r = trace_again(b, mesh);
+    return r;
+}
+
+// ---- Leaks ----
+
+static void set_rejected(zone_build *b, uint32_t is_rejected)
+{
+    portal_piece *pieces = b->portals.pieces.items;
+    for (size_t i = 0; i < b->portals.pieces.count; ++i) pieces[i].is_rejected = is_rejected;
+}
+
+static result settle(zone_build *b, const compile_mesh *mesh)
+{
+    result r = trace_until_settled(b, mesh);
+    zone_places_free(&b->places);
+    return r == RESULT_OK ? zone_places_make(b->in, &b->trace, b->memory, &b->places) : r;
+}
+
+// All liquids as walls, to see which of them look into the void: those alone stay walls.
+static result find_seals(zone_build *b, const compile_mesh *mesh, uint32_t *count)
+{
+    uint8_t *facing = memory_alloc_zeroed(b->memory, mesh->polygon_count, 1);
+    b->seals = memory_alloc_zeroed(b->memory, mesh->polygon_count, 1);
+    if (!facing || !b->seals) {
+        memory_free(b->memory, facing, mesh->polygon_count, 1);
+        return RESULT_NO_MEMORY;
+    }
+    for (uint32_t i = 0; i < mesh->polygon_count; ++i) b->seals[i] = (uint8_t)compile_polygon_is_liquid(b->in, &mesh->polygons[i]);
+    set_rejected(b, 1);
+    const result r = trace_again(b, mesh);
+    *count = 0;
+    for (uint32_t i = 0; i < surface_polygon_count(&b->trace.s) && r == RESULT_OK; ++i) {
+        const surface_polygon *p = surface_polygon_at(&b->trace.s, i);
+        if (p->kind != SURFACE_SEAL) continue;
+        const int front = zone_trace_region(&b->trace, 2 * i) == REGION_VOID, back = zone_trace_region(&b->trace, 2 * i + 1) == REGION_VOID;
+        if (front != back) facing[p->source] = 1;
+    }
+    for (uint32_t i = 0; i < mesh->polygon_count; ++i) *count += b->seals[i] = facing[i];
+    memory_free(b->memory, facing, mesh->polygon_count, 1);
+    return r;
+}
+
+// A liquid that stands against the void holds it back, as the maps' own compilers have it; only where the map would leak.
+static result settle_sealed(zone_build *b, const compile_mesh *mesh)
+{
+    result r = settle(b, mesh);
+    uint32_t liquids = 0, seals = 0;
+    for (uint32_t i = 0; i < mesh->polygon_count; ++i) liquids += compile_polygon_is_liquid(b->in, &mesh->polygons[i]) != 0;
+    if (r != RESULT_OK || b->places.leaking == ZONE_NONE || liquids == 0) return r;
+    r = find_seals(b, mesh, &seals);
+    if (r == RESULT_OK && seals) {
+        set_rejected(b, 0);
+        r = settle(b, mesh);
+        if (r != RESULT_OK || b->places.leaking == ZONE_NONE) return r;
+    }
+    if (r != RESULT_OK) return r;
+    memory_free(b->memory, b->seals, mesh->polygon_count, 1); // of no use: the leak is elsewhere
+    b->seals = NULL;
+    set_rejected(b, 0);
+    return settle(b, mesh);
+}
+
+static result tell_leak(zone_build *b, compiled_zones *z)
+{
+    const compile_entity *e = &b->in->entities[b->places.leaking];
+    z->leak = 1;
+    report_warning(b->report, b->in->path, e->line,
+                   "the map leaks: the %s at %g %g %g can reach the void, so all of it is one open zone; close the hole that the leak line leads to",
+                   e->class_name, e->origin[0], e->origin[1], e->origin[2]);
+    return leak_line_make(b->in, &b->trace, b->places.leaking, b->memory, z);
+}
+
+static result open_up(zone_build *b, const compile_mesh *mesh)
+{
+    set_rejected(b, 1);
+    return b->portals.pieces.count ? trace_again(b, mesh) : RESULT_OK;
+}
+
+// ---- All of it ----
+
+static void check_closed(zone_build *b)
+{
+    assert(b->trace.shells.open_segments == 0 && b->trace.regions.unclear == 0);
+    if (b->trace.shells.open_segments || b->trace.regions.unclear)
+        report_warning(b->report, b->in->path, 0, "the surface is open at %u edges and unclear at %u shells: zones there may be wrong; please report the map",
+                       b->trace.shells.open_segments, b->trace.regions.unclear);
+}
+
+static result run(zone_build *b, compiled_zones *z)
+{
+    result r = settle_sealed(b, z->mesh);
+    if (r != RESULT_OK) return r;
+    check_closed(b);
+    z->shells = b->trace.shells.shell_count;
+    if (b->places.leaking != ZONE_NONE) {
+        r = tell_leak(b, z);
+        if (r == RESULT_OK) r = open_up(b, z->mesh);
+        if (r != RESULT_OK) return r;
+    }
+    z->zone_count = z->leak ? 1 : b->places.region_count;
+    z->zones = arena_push(&z->memory, z->zone_count, sizeof(compiled_zone));
+    if (!z->zones) return RESULT_NO_MEMORY;
+    for (uint32_t i = 0; i < z->zone_count; ++i) z->zones[i] = (compiled_zone){0};
+    r = zone_places_name(b->in, &b->places, z);
+    return r == RESULT_OK ? zone_emit(&b->trace, &b->trace.rays, &b->places, z->leak ? ZONES_OPEN : ZONES_CLOSED, z) : r;
+}
+
+result compile_zones(const compile_input *in, compile_mesh *mesh, portal_choice choice, report *r, const allocator *memory, compiled_zones **out)
+{
+    zone_build b = {.in = in, .memory = memory, .report = r};
+    compiled_zones *z = memory_alloc_zeroed(memory, 1, sizeof(*z));
+    if (!z) {
+        compile_mesh_free(mesh);
+        return report_no_memory(r, in->path);
+    }
+    z->memory = arena_make(memory);
+    z->mesh = mesh;
+    const uint32_t polygon_count = mesh->polygon_count;
+    result made = portal_set_make(in, choice, r, memory, &b.portals);
+    if (made == RESULT_OK) {
+        made = run(&b, z);
+        portal_set_free(&b.portals);
+    }
+    memory_free(memory, b.seals, polygon_count, 1);
+    zone_trace_free(&b.trace);
+    zone_places_free(&b.places);
+    if (made == RESULT_OK) {
+        *out = z;
+        return RESULT_OK;
+    }
+    compiled_zones_free(z);
+    return made == RESULT_NO_MEMORY ? report_no_memory(r, in->path) : made;
+}
+
+void compiled_zones_free(compiled_zones *z)
+{
+    if (!z) return;
+    const allocator *memory = z->memory.memory;
+    compile_mesh_free(z->mesh);
+    arena_free(&z->memory);
+    memory_free(memory, z, 1, sizeof(*z));
+}
