@@ -15,6 +15,7 @@ typedef int (*app_command)(int argc, char **argv); // argv[0] is "portcullis NAM
 
 int command_plugins(int argc, char **argv);
 int command_info(int argc, char **argv);
+int command_compile(int argc, char **argv);
 int command_bench(int argc, char **argv);
 int command_render(int argc, char **argv);
 int command_explain(int argc, char **argv);

@@ -21,6 +21,7 @@ typedef struct command {
 static const command commands[] = {
     {"plugins", "portcullis plugins", "list cullers found, and libraries refused with the reason", command_plugins},
     {"info", "portcullis info", "what a scene holds", command_info},
+    {"compile", "portcullis compile", "brushes to zones joined by portals: a scene file", command_compile},
     {"bench", "portcullis bench", "measure cullers on a scene and camera path against the truth", command_bench},
     {"render", "portcullis render", "draw one view to a PNG", command_render},
     {"explain", "portcullis explain", "why one item was drawn or not in one view", command_explain},

@@ -208,13 +208,16 @@ static result fill(item_job *j, scene **out, compile_checks *checks)
     if (done == RESULT_OK) done = add_materials(j);
     if (done == RESULT_OK) done = all_vertices(&s);
     if (done == RESULT_OK) done = items_entities(j);
+    if (done == RESULT_OK) done = items_zones(j);
     if (done == RESULT_OK) done = structure_items(&s);
     const check_input check = {j, &s.rounded, s.all.items, s.all.count / 3, s.is_item};
     if (done == RESULT_OK) done = items_check(&check, checks);
     checks->triangles = s.triangle_count;
     checks->items = scene_builder_item_count(j->builder);
     structure_close(&s);
-    return done == RESULT_OK ? scene_builder_finish(j->builder, j->in->path, j->report, out) : done;
+    if (done == RESULT_OK) done = scene_builder_finish(j->builder, j->in->path, j->report, out);
+    if (done == RESULT_OK) checks->degenerate_triangles = (*out)->flat_triangles;
+    return done;
 }
 
 static result tell(const item_job *j, result done, uint32_t errors_before)

@@ -27,6 +27,8 @@ int item_object_name(const item_job *j, uint32_t entity, char *out, size_t size)
 
 // Brush entities as items and movers, bodies, places, lights (items_entities.c).
 result items_entities(item_job *j);
+// Zones by hulls, portals with their doors; behind items_entities (items_zones.c).
+result items_zones(item_job *j);
 
 // ---- Vertices rounded to the step that the scene will have (items_round.c) ----
 

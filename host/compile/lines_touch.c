@@ -54,9 +54,8 @@ static int touches(const line_set *l, const line_edge *e, uint32_t vertex)
 }
 
 // Of the edge's line an edge ends in the vertex: then the line has it anyway.
-static int has_own_edge(const line_set *l, uint32_t line, const uint32_t *first, const uint32_t *lines_at, uint32_t vertex)
+static int has_own_edge(uint32_t line, const uint32_t *first, const uint32_t *lines_at, uint32_t vertex)
 {
-    (void)l;
     for (uint32_t i = first[vertex]; i < first[vertex + 1]; ++i)
         if (lines_at[i] == line) return 1;
     return 0;
@@ -90,7 +89,7 @@ static result search(const line_set *l, const box_tree *tree, const uint32_t *fi
         box_walk_start(&walk, tree, &at);
         for (uint32_t i; box_walk_next(&walk, &i);) {
             const line_edge *e = (line_edge *)l->edges.items + i;
-            if (has_own_edge(l, e->line, first, lines_at, v) || !touches(l, e, v)) continue;
+            if (has_own_edge(e->line, first, lines_at, v) || !touches(l, e, v)) continue;
             const line_touch found = {e->line, v};
             const line_touch *last = out->count ? (line_touch *)out->items + out->count - 1 : NULL;
             if (last && last->line == found.line && last->vertex == found.vertex) continue;

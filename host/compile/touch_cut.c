@@ -19,8 +19,12 @@ typedef struct toucher {
 
 static int is_inside(const surface *s, const surface_polygon *p, const uint32_t ends[2])
 {
-    if (surface_side(s, ends[0], p->plane) || surface_side(s, ends[1], p->plane)) return 0;
     const surface_corner *c = surface_corners(s, p);
+    for (uint32_t i = 0; i < p->count; ++i) { // most are neighbours
+        const uint32_t next = c[i + 1 < p->count ? i + 1 : 0].vertex;
+        if ((c[i].vertex == ends[0] && next == ends[1]) || (c[i].vertex == ends[1] && next == ends[0])) return 0;
+    }
+    if (surface_side(s, ends[0], p->plane) || surface_side(s, ends[1], p->plane)) return 0;
     for (uint32_t i = 0; i < p->count; ++i)
         if (surface_side(s, ends[0], c[i].edge) >= 0 && surface_side(s, ends[1], c[i].edge) >= 0) return 0;
     return 1;

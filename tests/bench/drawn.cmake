@@ -5,7 +5,7 @@ get_target_property(app_sources portcullis SOURCES)
 list(TRANSFORM app_sources PREPEND ${PROJECT_SOURCE_DIR}/host/app/)
 add_library(mutant_app OBJECT ${app_sources})
 target_compile_definitions(mutant_app PRIVATE "PORTCULLIS_VERSION=\"mutant\"")
-target_link_libraries(mutant_app PUBLIC portcullis_flags portcullis_bench host_core host_import host_render PkgConfig::JANSSON m)
+target_link_libraries(mutant_app PUBLIC portcullis_flags portcullis_bench host_compile host_core host_import host_render PkgConfig::JANSSON m)
 
 function(portcullis_drawing_mutant name file old new)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/drawing/${name})

@@ -129,10 +129,8 @@ static void eleven_rooms_are_eleven_zones(void **state)
     zone_scene s;
     zone_scene_begin(&s);
     zone_scene_box(&s, BRUSH_ADD, 0, 0, 0, 11 * 64 + 8, 64, 64);
-    for (int i = 0; i < 11; ++i) {
-        zone_scene_box(&s, BRUSH_SUBTRACT, 8 + 64 * i, 8, 8, 56, 48, 48);
-        zone_scene_point(&s, "light", 40 + 64 * i, 32, 32);
-    }
+    for (int i = 0; i < 11; ++i) zone_scene_box(&s, BRUSH_SUBTRACT, 8 + 64 * i, 8, 8, 56, 48, 48);
+    for (int i = 0; i < 11; ++i) zone_scene_point(&s, "light", 40 + 64 * i, 32, 32);
     finish(&s, expect(&s, PORTALS_NONE, (expected){11, 11, 12, 0}));
 }
 
