@@ -14,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <time.h>
 
 typedef struct arguments {
@@ -81,8 +82,8 @@ static error_t parse(int key, char *text, struct argp_state *state)
     } else if (key == ARGP_KEY_ARG && !a->input) a->input = text;
     else if (key == ARGP_KEY_ARG) argp_error(state, "one INPUT, not also '%s'", text);
     else if (key == ARGP_KEY_END && (!a->input || !a->out)) argp_error(state, "INPUT and -o are needed");
+    else if (key == ARGP_KEY_END && a->json && a->dump && !a->dump_file) argp_error(state, "--json has stdout: name a file, --dump %s=FILE", a->dump);
     else return ARGP_ERR_UNKNOWN;
-    if (key == ARGP_KEY_END && a->json && a->dump && !a->dump_file) argp_error(state, "--json has stdout: name a file, --dump %s=FILE", a->dump);
     return 0;
 }
 
@@ -139,6 +140,9 @@ typedef struct compilation {
 
 static result stage_input(compilation *c)
 {
+    const char *dot = strrchr(c->asked->input, '.');
+    if (!dot || strcasecmp(dot, ".map") != 0)
+        return report_error(&c->report, c->asked->input, 0, "compile takes a .map of brushes; other scenes need no compiling");
     result done = file_read(c->asked->input, &c->memory, &c->report, &c->text, &c->size);
     if (done == RESULT_OK) done = compile_input_map(c->asked->input, c->text, c->size, &c->asked->options, &c->memory, &c->report, &c->input);
     return done;

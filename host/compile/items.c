@@ -9,7 +9,7 @@
 enum { NAME_BYTES = 96 };
 #define VERTEX_NONE UINT32_MAX
 
-// ---- Planes and texture coordinates ----
+// ---- Planes, texture coordinates, loops ----
 
 void item_plane(const item_job *j, plane_ref ref, double out[4])
 {
@@ -33,6 +33,16 @@ void item_texcoord(const compile_face *face, const double metres[3], float out[2
         const double *row = face->texture[i];
         out[i] = (float)(((row[0] * metres[0] + row[1] * metres[1]) + row[2] * metres[2]) + row[3]);
     }
+}
+
+int item_goes_straight(const item_job *j, const compile_polygon *p, uint32_t place)
+{
+    const compile_mesh *m = j->zones->mesh;
+    const plane_ref *edges = m->edge_planes + p->first_vertex;
+    const uint32_t before = place ? place - 1 : p->vertex_count - 1, after = place + 1 < p->vertex_count ? place + 1 : 0;
+    if (edges[before] == edges[place]) return 1;
+    const compile_vertex *v = &m->vertices[m->loop[p->first_vertex + after]];
+    return plane_table_side_at(j->in->planes, v->planes, v->position, edges[before]) == 0;
 }
 
 // ---- Structure ----

@@ -23,6 +23,8 @@ typedef struct item_job {
 void item_plane(const item_job *j, plane_ref ref, double out[4]);
 int item_exact_plane(const item_job *j, plane_ref ref, cull_exact_plane *out); // 0: over 63 bits
 void item_texcoord(const compile_face *face, const double metres[3], float out[2]);
+// 1 when the polygon's loop goes straight on at that place: the next vertex lies on the plane of the edge before, exactly.
+int item_goes_straight(const item_job *j, const compile_polygon *p, uint32_t place);
 int item_object_name(const item_job *j, uint32_t entity, char *out, size_t size); // its length
 
 // Brush entities as items and movers, bodies, places, lights (items_entities.c).
@@ -53,7 +55,7 @@ typedef struct loop_corner {
 } loop_corner;
 
 typedef struct loop_triangulator {
-    const compile_input *in;
+    const item_job *job;
     const compile_mesh *mesh;
     const rounded_mesh *rounded;
     buffer corners; // loop_corner

@@ -7,7 +7,7 @@
 
 loop_triangulator loop_triangulator_make(const item_job *j, const rounded_mesh *rounded)
 {
-    return (loop_triangulator){.in = j->in,
+    return (loop_triangulator){.job = j,
                                .mesh = j->zones->mesh,
                                .rounded = rounded,
                                .corners = buffer_make(j->memory, sizeof(loop_corner)),
@@ -21,18 +21,6 @@ void loop_triangulator_free(loop_triangulator *t)
 }
 
 // ---- Corners ----
-
-// 1 when the loop goes straight on there: the next vertex lies on the plane of the edge before.
-static int goes_straight(const loop_triangulator *t, const compile_polygon *p, uint32_t at)
-{
-    const compile_mesh *m = t->mesh;
-    const uint32_t *loop = m->loop + p->first_vertex;
-    const plane_ref *edges = m->edge_planes + p->first_vertex;
-    const uint32_t before = at ? at - 1 : p->vertex_count - 1, after = at + 1 < p->vertex_count ? at + 1 : 0;
-    if (edges[before] == edges[at]) return 1;
-    const compile_vertex *v = &m->vertices[loop[after]];
-    return plane_table_side_at(t->in->planes, v->planes, v->position, edges[before]) == 0;
-}
 
 // Vertices in a row that are rounded to one point are one corner, on the sides before the first and after the last of them.
 static int push_corner(loop_triangulator *t, const loop_corner *c)
@@ -48,13 +36,13 @@ static int push_corner(loop_triangulator *t, const loop_corner *c)
 static result take_corners(loop_triangulator *t, const compile_polygon *p, uint32_t *side_count)
 {
     uint32_t start = 0, side = 0;
-    while (start < p->vertex_count && goes_straight(t, p, start)) start++;
+    while (start < p->vertex_count && item_goes_straight(t->job, p, start)) start++;
     t->corners.count = 0;
     if (start == p->vertex_count) return RESULT_OK;
     for (uint32_t i = 0; i < p->vertex_count; ++i) {
         const uint32_t at = (start + i) % p->vertex_count;
         loop_corner c = {.vertex = t->rounded->same_as[t->mesh->loop[p->first_vertex + at]], .place = at, .sides = {side, side}};
-        if (i && !goes_straight(t, p, at)) c.sides[1] = ++side;
+        if (i && !item_goes_straight(t->job, p, at)) c.sides[1] = ++side;
         if (!push_corner(t, &c)) return RESULT_NO_MEMORY;
     }
     loop_corner *all = t->corners.items;
@@ -81,7 +69,7 @@ static double ear_width(const loop_triangulator *t, const compile_polygon *p, co
 {
     const loop_corner *all = t->corners.items;
     const int32_t *o = t->rounded->points[b->vertex], *q = t->rounded->points[all[b->before].vertex], *r = t->rounded->points[all[b->after].vertex];
-    const cull_wide_plane *plane = plane_table_canonical(t->in->planes, p->plane);
+    const cull_wide_plane *plane = plane_table_canonical(t->job->in->planes, p->plane);
     double u[3], v[3], along = 0, cross[3], size = 0, longest = 0, lengths[3] = {0};
     for (int k = 0; k < 3; ++k) {
         u[k] = (double)r[k] - o[k];

@@ -41,21 +41,12 @@ typedef struct node { size_t first, count; uint32_t depth; } node;
 
 // ---- Fragments ----
 
-static int goes_straight(const partition *p, const compile_mesh *m, const compile_polygon *q, uint32_t at)
-{
-    const uint32_t before = at ? at - 1 : q->vertex_count - 1, after = at + 1 < q->vertex_count ? at + 1 : 0;
-    const plane_ref *edges = m->edge_planes + q->first_vertex;
-    if (edges[before] == edges[at]) return 1;
-    const compile_vertex *v = &m->vertices[m->loop[q->first_vertex + after]];
-    return plane_table_side_at(p->job->in->planes, v->planes, v->position, edges[before]) == 0;
-}
-
 static result add_fragment(partition *p, const compile_polygon *q, uint32_t front, uint32_t behind)
 {
     const compile_mesh *m = p->job->zones->mesh;
     fragment f = {{q->plane, (uint32_t)p->edges.count, 0}, {front, behind}};
     for (uint32_t i = 0; i < q->vertex_count; ++i) {
-        if (goes_straight(p, m, q, i)) continue;
+        if (item_goes_straight(p->job, q, i)) continue;
         polygon_edge *e = buffer_push(&p->edges, 1);
         if (!e) return RESULT_NO_MEMORY;
         *e = (polygon_edge){.plane = m->edge_planes[q->first_vertex + i]};
@@ -279,7 +270,7 @@ static result add_portal(partition *p, uint32_t portal)
     buffer points = buffer_make(j->memory, 3 * sizeof(double));
     result done = RESULT_OK;
     for (uint32_t i = 0; i < q.vertex_count && done == RESULT_OK; ++i) {
-        if (goes_straight(p, m, &q, i)) continue;
+        if (item_goes_straight(j, &q, i)) continue;
         double *to = buffer_push(&points, 1);
         if (!to) done = RESULT_NO_MEMORY;
         for (int k = 0; k < 3 && to; ++k) to[k] = m->vertices[m->loop[q.first_vertex + i]].position[k] / j->in->steps_per_metre;
