@@ -3,35 +3,16 @@
 #define _GNU_SOURCE
 #include "app.h"
 
+#include "../core/search_path.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-enum { FOLDERS_MOST = 64, PATH_BYTES = 4096 };
+enum { PATH_BYTES = 4096 };
 
-typedef struct folders {
-    const char *names[FOLDERS_MOST];
-    uint32_t count;
-} folders;
-
-static void add_folder(folders *f, const char *name)
-{
-    if (name && *name && f->count < FOLDERS_MOST) f->names[f->count++] = name;
-}
-
-// An empty part would mean the current folder to other tools; here it means nothing.
-static void add_path_variable(app *a, folders *f)
-{
-    const char *at = getenv("PORTCULLIS_PLUGIN_PATH");
-    while (at && *at) {
-        const size_t length = strcspn(at, ":");
-        add_folder(f, length ? arena_text(&a->texts, at, length) : NULL);
-        at += length + (at[length] == ':');
-    }
-}
-
-static void add_beside_executable(app *a, folders *f)
+static void add_beside_executable(app *a, search_path *p)
 {
     static const char *const places[] = {"../lib/portcullis", "../plugins"}; // installed; build tree
     char path[PATH_BYTES];
@@ -42,7 +23,7 @@ static void add_beside_executable(app *a, folders *f)
     if (!slash) return;
     for (size_t i = 0; i < sizeof places / sizeof *places; ++i) {
         snprintf(slash + 1, 32, "%s", places[i]);
-        add_folder(f, arena_text(&a->texts, path, strlen(path)));
+        search_path_add(p, arena_text(&a->texts, path, strlen(path)));
     }
 }
 
@@ -51,10 +32,10 @@ result app_open(app *a, const app_plugin_files *files)
     *a = (app){.memory = allocator_heap(), .report = report_to_stderr()};
     a->texts = arena_make(a->memory);
     host_services_fill(&a->services, a->memory, &a->report);
-    folders f = {0};
-    add_path_variable(a, &f);
-    add_beside_executable(a, &f);
-    loader_options options = {.folders = f.names, .folder_count = f.count};
+    search_path p = {0};
+    search_path_add_variable(&p, &a->texts);
+    add_beside_executable(a, &p);
+    loader_options options = {.folders = p.folders, .folder_count = p.count};
     if (files) {
         options.files = files->files;
         options.file_count = files->count;

@@ -3,20 +3,15 @@
 #define _GNU_SOURCE
 #include "library.h"
 
+#include "../core/search_path.h"
 #include "../import/import.h"
 
 #include <dlfcn.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { FOLDERS_MOST = 64, PATH_BYTES = 4096 };
-
-typedef struct folder_list {
-    const char *names[FOLDERS_MOST];
-    uint32_t count;
-} folder_list;
+enum { PATH_BYTES = 4096 };
 
 cull_result library_result(result done)
 {
@@ -46,24 +41,8 @@ static void tell_log(void *user, report_level level, const char *text)
 
 // ---- Where plugins are looked for ----
 
-static void add_folder(folder_list *f, const char *name)
-{
-    if (name && *name && f->count < FOLDERS_MOST) f->names[f->count++] = name;
-}
-
-// An empty part would mean the current folder to other tools; here it means nothing.
-static void add_path_variable(cull_scene *s, folder_list *f)
-{
-    const char *at = getenv("PORTCULLIS_PLUGIN_PATH");
-    while (at && *at) {
-        const size_t length = strcspn(at, ":");
-        add_folder(f, length ? arena_text(&s->texts, at, length) : NULL);
-        at += length + (at[length] == ':');
-    }
-}
-
 // Beside this library, as installed and as built; where it is linked into the executable, beside that.
-static void add_beside_library(cull_scene *s, folder_list *f)
+static void add_beside_library(cull_scene *s, search_path *p)
 {
     static const char *const places[] = {"portcullis", "../lib/portcullis", "../plugins"};
     static const char here = 0; // an object of this library, to ask where it was loaded from
@@ -74,17 +53,17 @@ static void add_beside_library(cull_scene *s, folder_list *f)
     if (!slash) return; // found by a bare name: no folder to go by
     for (size_t i = 0; i < sizeof places / sizeof *places; ++i) {
         const int length = snprintf(path, sizeof path, "%.*s/%s", (int)(slash - info.dli_fname), info.dli_fname, places[i]);
-        if (length > 0 && (size_t)length < sizeof path) add_folder(f, arena_text(&s->texts, path, (size_t)length));
+        if (length > 0 && (size_t)length < sizeof path) search_path_add(p, arena_text(&s->texts, path, (size_t)length));
     }
 }
 
 static result open_plugins(cull_scene *s, const cull_scene_options *o)
 {
-    folder_list f = {0};
-    for (uint32_t i = 0; i < o->plugin_folder_count; ++i) add_folder(&f, o->plugin_folders[i]);
-    add_path_variable(s, &f);
-    add_beside_library(s, &f);
-    const loader_options options = {.folders = f.names, .folder_count = f.count};
+    search_path p = {0};
+    for (uint32_t i = 0; i < o->plugin_folder_count; ++i) search_path_add(&p, o->plugin_folders[i]);
+    search_path_add_variable(&p, &s->texts);
+    add_beside_library(s, &p);
+    const loader_options options = {.folders = p.folders, .folder_count = p.count};
     return loader_open(&options, s->memory, &s->report, &s->plugins);
 }
 
