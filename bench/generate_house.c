@@ -330,13 +330,15 @@ static void porch_write(const house_site *h, obj_writer *w)
     obj_block(w, &canopy);
 }
 
-// ---- Stairs: steps that touch are parts of two objects, so that each object is a surface everywhere ----
+// ---- Stairs: neighbouring steps are parts of two objects, so that each object is a surface everywhere ----
 
 typedef struct flight { const house_site *house; obj_writer *writer; int32_t parity, next; } flight;
 
+// A step goes into what it stands by, every second one deeper: no two faces coincide, which no depth could order.
 static void step_write(flight *f, local_place a, local_place b)
 {
-    const block step = house_block(f->house, a, b);
+    const int32_t sunk = 1 + f->next % 2;
+    const block step = house_block(f->house, (local_place){a.x - sunk, a.y - sunk, a.z - sunk}, (local_place){b.x + sunk, b.y, b.z + sunk});
     if (f->next++ % 2 == f->parity) obj_block(f->writer, &step);
 }
 
