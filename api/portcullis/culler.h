@@ -330,6 +330,7 @@ typedef struct cull_bake {
     uint64_t (*save)(const cull_culler *, void *blob, uint64_t size); // [build] bytes needed; writes when they fit
 } cull_bake;
 // Extension of a host, for the zone being built: the blob to load instead of building. NULL: build.
+// Where build refuses it with CULL_ERR_BLOB, the host warns, destroys the culler, and builds one anew that is lent none.
 #define CULL_EXT_BLOB "cull.blob/1"
 typedef struct cull_blob { const void *bytes; uint64_t size; } cull_blob; // 64-byte aligned, as long as the zone
 

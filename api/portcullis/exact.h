@@ -150,18 +150,20 @@ typedef struct cull_row {
     double reach;        // O
 } cull_row;
 
+static inline double cull_larger(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static inline double cull_size(double v) // no branch on a sign, which would be as good as random
+{
+    return cull_larger(v, -v);
+}
+
 static inline cull_row cull_row_of(const cull_wide_plane *p)
 {
-    cull_row r;
-    r.most = 0;
-    for (int i = 0; i < 3; i++) {
-        r.n[i] = (double)p->normal[i];
-        const double size = r.n[i] < 0 ? -r.n[i] : r.n[i];
-        r.most = size > r.most ? size : r.most;
-    }
-    r.offset = cull_wide_to_double(p->offset);
-    r.reach = r.offset < 0 ? -r.offset : r.offset;
-    if (r.reach < 1) r.reach = 1;
+    const double x = (double)p->normal[0], y = (double)p->normal[1], z = (double)p->normal[2], offset = cull_wide_to_double(p->offset);
+    const cull_row r = {{x, y, z}, offset, cull_larger(cull_larger(cull_size(x), cull_size(y)), cull_size(z)), cull_larger(cull_size(offset), 1)};
     return r;
 }
 
@@ -254,8 +256,7 @@ static inline int cull_four_sign_of_rows(const cull_wide_plane *const p[4], cons
     const cull_minors s = cull_minors_of(r[0], r[1]), c = cull_minors_of(r[2], r[3]);
     const double d = s.xy * c.z - s.xz * c.y + s.x * c.yz + s.yz * c.x - s.y * c.xz + s.z * c.xy, error = 1.2e-14 * q;
     *tier = CULL_TIER_DOUBLE;
-    if (d > error) return 1;
-    if (d < -error) return -1;
+    if (cull_size(d) > error) return (d > 0) - (d < 0);
     *tier = 6 * q < CULL_MOST_64 ? CULL_TIER_64 : 6 * q < CULL_MOST_128 ? CULL_TIER_128 : CULL_TIER_256;
     return *tier == CULL_TIER_64 ? cull_four_64(p) : *tier == CULL_TIER_128 ? cull_four_128(p) : cull_four_256(p);
 }
@@ -281,9 +282,9 @@ static inline int cull_four_sign(const cull_wide_plane *a, const cull_wide_plane
 static inline int cull_three_256(const int64_t *a, const int64_t *b, const int64_t *c)
 {
     cull_int256 w = {{0, 0, 0, 0}};
-    cull_int256_multiply_add(&w, cull_wide_minor(a[0], b[1], a[1], b[0]), cull_wide_from(c[2]));
-    cull_int256_multiply_subtract(&w, cull_wide_minor(a[0], b[2], a[2], b[0]), cull_wide_from(c[1]));
-    cull_int256_multiply_add(&w, cull_wide_minor(a[1], b[2], a[2], b[1]), cull_wide_from(c[0]));
+    cull_int256_scale_add(&w, cull_wide_minor(a[0], b[1], a[1], b[0]), c[2]);
+    cull_int256_scale_subtract(&w, cull_wide_minor(a[0], b[2], a[2], b[0]), c[1]);
+    cull_int256_scale_add(&w, cull_wide_minor(a[1], b[2], a[2], b[1]), c[0]);
     return cull_int256_sign(&w);
 }
 
@@ -302,29 +303,24 @@ static inline int cull_three_64(const int64_t *a, const int64_t *b, const int64_
 }
 
 // The sign of w = det(n_a, n_b, n_c) = (n_a x n_b) . n_c; 0: the planes don't meet in one point. A term goes through five
-// roundings and there are six, each at most N N N: 30 * 1.01 * 2^-53 = 3.4e-15.
+// roundings and there are six, each at most N N N: 30 * 1.01 * 2^-53 = 3.4e-15. Rows made before, see cull_row_of.
+static inline int cull_normals_sign_of_rows(const cull_wide_plane *const p[3], const cull_row *const r[3], cull_tier *tier)
+{
+    const double *u = r[0]->n, *v = r[1]->n, *n = r[2]->n, size = r[0]->most * r[1]->most * r[2]->most, error = 4e-15 * size;
+    const double w = (u[0] * v[1] - u[1] * v[0]) * n[2] - (u[0] * v[2] - u[2] * v[0]) * n[1] + (u[1] * v[2] - u[2] * v[1]) * n[0];
+    *tier = CULL_TIER_DOUBLE;
+    if (cull_size(w) > error) return (w > 0) - (w < 0);
+    *tier = 6 * size < CULL_MOST_64 ? CULL_TIER_64 : 6 * size < CULL_MOST_128 ? CULL_TIER_128 : CULL_TIER_256;
+    if (*tier == CULL_TIER_64) return cull_three_64(p[0]->normal, p[1]->normal, p[2]->normal);
+    return *tier == CULL_TIER_128 ? cull_three_128(p[0]->normal, p[1]->normal, p[2]->normal) : cull_three_256(p[0]->normal, p[1]->normal, p[2]->normal);
+}
+
 static inline int cull_normals_sign_tier(const cull_wide_plane *a, const cull_wide_plane *b, const cull_wide_plane *c, cull_tier *tier)
 {
-    const int64_t *const n[3] = {a->normal, b->normal, c->normal};
-    double v[3][3], size = 1;
-    for (int i = 0; i < 3; i++) {
-        double most = 0;
-        for (int j = 0; j < 3; j++) {
-            v[i][j] = (double)n[i][j];
-            const double part = v[i][j] < 0 ? -v[i][j] : v[i][j];
-            most = part > most ? part : most;
-        }
-        size *= most;
-    }
-    const double w = (v[0][0] * v[1][1] - v[0][1] * v[1][0]) * v[2][2] - (v[0][0] * v[1][2] - v[0][2] * v[1][0]) * v[2][1] +
-                     (v[0][1] * v[1][2] - v[0][2] * v[1][1]) * v[2][0];
-    const double error = 4e-15 * size;
-    *tier = CULL_TIER_DOUBLE;
-    if (w > error) return 1;
-    if (w < -error) return -1;
-    *tier = 6 * size < CULL_MOST_64 ? CULL_TIER_64 : 6 * size < CULL_MOST_128 ? CULL_TIER_128 : CULL_TIER_256;
-    if (*tier == CULL_TIER_64) return cull_three_64(n[0], n[1], n[2]);
-    return *tier == CULL_TIER_128 ? cull_three_128(n[0], n[1], n[2]) : cull_three_256(n[0], n[1], n[2]);
+    const cull_wide_plane *const planes[3] = {a, b, c};
+    const cull_row one = cull_row_of(a), two = cull_row_of(b), three = cull_row_of(c);
+    const cull_row *const rows[3] = {&one, &two, &three};
+    return cull_normals_sign_of_rows(planes, rows, tier);
 }
 
 static inline int cull_normals_sign(const cull_wide_plane *a, const cull_wide_plane *b, const cull_wide_plane *c)
@@ -362,24 +358,46 @@ static inline bool cull_meet_position_64(const cull_wide_plane *a, const cull_wi
     return true;
 }
 
+static inline double cull_numerator_to_double(cull_wide v) // as cull_int256_to_double has it, so that no position tells its tier
+{
+    const cull_int256 wide = cull_int256_of(v, cull_wide_from(cull_signed(cull_mask_negative(v.high))));
+    return cull_int256_to_double(&wide);
+}
+
+static inline bool cull_meet_position_128(const cull_wide_plane *a, const cull_wide_plane *b, const cull_wide_plane *c, double out[3])
+{
+    const cull_minors_128 s = cull_minors_128_of(a, b);
+    const int64_t *n = c->normal;
+    const cull_wide w = cull_wide_add(cull_wide_subtract(cull_wide_scale(s.xy, n[2]), cull_wide_scale(s.xz, n[1])), cull_wide_scale(s.yz, n[0]));
+    if (cull_wide_sign(w) == 0) return false;
+    const cull_wide x = cull_wide_subtract(cull_wide_scale(s.y, n[2]), cull_wide_scale(s.z, n[1])), x_rest = cull_wide_multiply(s.yz, c->offset);
+    const cull_wide y = cull_wide_subtract(cull_wide_scale(s.z, n[0]), cull_wide_scale(s.x, n[2])), y_rest = cull_wide_multiply(s.xz, c->offset);
+    const cull_wide z = cull_wide_subtract(cull_wide_scale(s.x, n[1]), cull_wide_scale(s.y, n[0])), z_rest = cull_wide_multiply(s.xy, c->offset);
+    const double unit = cull_numerator_to_double(w);
+    out[0] = cull_numerator_to_double(cull_wide_subtract(x, x_rest)) / unit + 0.0;
+    out[1] = cull_numerator_to_double(cull_wide_add(y, y_rest)) / unit + 0.0;
+    out[2] = cull_numerator_to_double(cull_wide_subtract(z, z_rest)) / unit + 0.0;
+    return true;
+}
+
 static inline bool cull_meet_position_256(const cull_wide_plane *a, const cull_wide_plane *b, const cull_wide_plane *c, double out[3])
 {
     const cull_minors_128 s = cull_minors_128_of(a, b);
-    const cull_wide n[3] = {cull_wide_from(c->normal[0]), cull_wide_from(c->normal[1]), cull_wide_from(c->normal[2])}, o = c->offset;
+    const int64_t *n = c->normal;
     cull_int256 w = {{0, 0, 0, 0}}, x = w, y = w, z = w;
-    cull_int256_multiply_add(&w, s.xy, n[2]);
-    cull_int256_multiply_subtract(&w, s.xz, n[1]);
-    cull_int256_multiply_add(&w, s.yz, n[0]);
+    cull_int256_scale_add(&w, s.xy, n[2]);
+    cull_int256_scale_subtract(&w, s.xz, n[1]);
+    cull_int256_scale_add(&w, s.yz, n[0]);
     if (cull_int256_sign(&w) == 0) return false;
-    cull_int256_multiply_add(&x, s.y, n[2]);
-    cull_int256_multiply_subtract(&x, s.yz, o);
-    cull_int256_multiply_subtract(&x, s.z, n[1]);
-    cull_int256_multiply_add(&y, s.xz, o);
-    cull_int256_multiply_subtract(&y, s.x, n[2]);
-    cull_int256_multiply_add(&y, s.z, n[0]);
-    cull_int256_multiply_add(&z, s.x, n[1]);
-    cull_int256_multiply_subtract(&z, s.xy, o);
-    cull_int256_multiply_subtract(&z, s.y, n[0]);
+    cull_int256_scale_add(&x, s.y, n[2]);
+    cull_int256_multiply_subtract(&x, s.yz, c->offset);
+    cull_int256_scale_subtract(&x, s.z, n[1]);
+    cull_int256_multiply_add(&y, s.xz, c->offset);
+    cull_int256_scale_subtract(&y, s.x, n[2]);
+    cull_int256_scale_add(&y, s.z, n[0]);
+    cull_int256_scale_add(&z, s.x, n[1]);
+    cull_int256_multiply_subtract(&z, s.xy, c->offset);
+    cull_int256_scale_subtract(&z, s.y, n[0]);
     const double unit = cull_int256_to_double(&w);
     out[0] = cull_int256_to_double(&x) / unit + 0.0;
     out[1] = cull_int256_to_double(&y) / unit + 0.0;
@@ -390,13 +408,22 @@ static inline bool cull_meet_position_256(const cull_wide_plane *a, const cull_w
 // The meeting point in doubles, from the exact numerators and w, the cofactors of row 4 in D: each coordinate within 2^-50
 // of its own size (3 + 3 roundings, and the division's one). Signs and zeros are exact. false when there is none.
 // With N and O as for D, no minor, numerator or sum in between exceeds 2 M, M = N1 N2 O3 + N1 O2 N3 + O1 N2 N3, nor w
-// 6 N1 N2 N3: 64 bits do while both are below 2^62, as in nearly all of a hand-made map.
+// 6 N1 N2 N3: 64 bits do while both are below 2^62, as in nearly all of a hand-made map; 128 while both are below 2^126.
+// Rows made before, see cull_row_of.
+static inline bool cull_meet_position_of_rows(const cull_wide_plane *const p[3], const cull_row *const r[3], double out[3])
+{
+    const double n01 = r[0]->most * r[1]->most, n012 = 6 * (n01 * r[2]->most);
+    const double most = 4 * (n01 * r[2]->reach + (r[0]->most * r[1]->reach + r[0]->reach * r[1]->most) * r[2]->most);
+    if (most < CULL_MOST_64 && n012 < CULL_MOST_64) return cull_meet_position_64(p[0], p[1], p[2], out);
+    return most < CULL_MOST_128 && n012 < CULL_MOST_128 ? cull_meet_position_128(p[0], p[1], p[2], out) : cull_meet_position_256(p[0], p[1], p[2], out);
+}
+
 static inline bool cull_meet_position(const cull_wide_plane *a, const cull_wide_plane *b, const cull_wide_plane *c, double out[3])
 {
-    const cull_row p = cull_row_of(a), q = cull_row_of(b), r = cull_row_of(c);
-    const double most = p.most * q.most * r.reach + (p.most * q.reach + p.reach * q.most) * r.most;
-    return 4 * most < CULL_MOST_64 && p.most * q.most * r.most < CULL_MOST_64 / 6 ? cull_meet_position_64(a, b, c, out)
-                                                                                 : cull_meet_position_256(a, b, c, out);
+    const cull_wide_plane *const planes[3] = {a, b, c};
+    const cull_row one = cull_row_of(a), two = cull_row_of(b), three = cull_row_of(c);
+    const cull_row *const rows[3] = {&one, &two, &three};
+    return cull_meet_position_of_rows(planes, rows, out);
 }
 #define CULL_MEET_ERROR 8.881784197001252e-16 // 2^-50, of each coordinate's size
 
@@ -406,8 +433,8 @@ static inline bool cull_meet_position(const cull_wide_plane *a, const cull_wide_
 static inline int cull_side_of_position(const cull_row *plane, const double p[3])
 {
     const double x = plane->n[0] * p[0], y = plane->n[1] * p[1], z = plane->n[2] * p[2], height = ((x + y) + z) + plane->offset;
-    const double size = (((x < 0 ? -x : x) + (y < 0 ? -y : y)) + (z < 0 ? -z : z)) + plane->reach, error = 2e-15 * size;
-    return height > error ? 1 : height < -error ? -1 : 0;
+    const double error = 2e-15 * (((cull_size(x) + cull_size(y)) + cull_size(z)) + plane->reach);
+    return (height > error) - (height < -error);
 }
 
 // ---- Directions: radial order round a line ----

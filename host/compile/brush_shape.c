@@ -23,7 +23,7 @@ void brush_shape_free(brush_shape *s)
 int brush_shape_cube(plane_table *t, plane_ref cube[6])
 {
     for (int i = 0; i < 6; ++i) {
-        cull_wide_plane p = {{0, 0, 0}, cull_wide_from(-CULL_GRID_MOST - 1)};
+        cull_wide_plane p = {{0, 0, 0}, cull_wide_from(-2 * (int64_t)CULL_GRID_MOST)};
         p.normal[i / 2] = i % 2 ? -1 : 1; // fronts outside: first the high side of an axis, then the low one
         cube[i] = plane_table_add(t, &p);
         if (cube[i] == PLANE_NONE) return 0;
@@ -50,62 +50,80 @@ static int start_loop(brush_shape *s, const plane_table *t, const plane_ref cube
     for (int i = 1; i < 3; ++i)
         if (cull_magnitude(p.normal[i]) > cull_magnitude(p.normal[axis])) axis = i;
     const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-    const plane_ref up[4] = {cube[2 * b + 1], cube[2 * a], cube[2 * b], cube[2 * a + 1]}; // counterclockwise seen from the axis' end
+    const plane_ref up[4] = {cube[2 * a], cube[2 * b], cube[2 * a + 1], cube[2 * b + 1]}; // counterclockwise seen from the axis' end
     s->loop.count = 0;
     for (int i = 0; i < 4; ++i) {
-        const int forward = p.normal[axis] > 0, at = forward ? i : 3 - i, before = forward ? (at + 3) % 4 : (at + 1) % 4;
+        const int forward = p.normal[axis] > 0, at = forward ? i : (4 - i) % 4, before = forward ? (at + 3) % 4 : (at + 1) % 4;
         const shape_corner c = {.planes = {face, up[before], up[at]}, .edge = up[at]};
         if (!push_corner(t, &s->loop, &c)) return 0;
     }
     return 1;
 }
 
-static shape_fault cut_loop(brush_shape *s, const plane_table *t, plane_ref face, plane_ref by)
+static int keep_corner(buffer *loop, const shape_corner *c, plane_ref edge)
+{
+    shape_corner *kept = buffer_append(loop, c, 1);
+    if (kept) kept->edge = edge;
+    return kept != NULL;
+}
+
+// The new edge stands last where the loop's first corner is on the plane and the edge from it is cut off.
+static shape_fault copy_inside(brush_shape *s, const plane_table *t, plane_ref face, plane_ref by)
 {
     const size_t count = s->loop.count;
+    const shape_corner *c = s->loop.items;
+    const int turned = c[0].side == 0 && c[1].side > 0;
+    s->other.count = 0;
+    for (size_t i = turned ? 1 : 0; i < count; ++i) {
+        const int side = c[i].side, next_side = c[i + 1 < count ? i + 1 : 0].side;
+        if (side <= 0 && !keep_corner(&s->other, &c[i], side == 0 && next_side > 0 ? by : c[i].edge)) return SHAPE_NO_MEMORY;
+        if (side * next_side < 0) {
+            const shape_corner made = {.planes = {face, c[i].edge, by}, .edge = side < 0 ? by : c[i].edge};
+            if (!push_corner(t, &s->other, &made)) return SHAPE_NO_MEMORY;
+        }
+    }
+    return !turned || keep_corner(&s->other, &c[0], by) ? SHAPE_SOUND : SHAPE_NO_MEMORY;
+}
+
+static shape_fault cut_loop(brush_shape *s, const plane_table *t, plane_ref face, plane_ref by)
+{
     shape_corner *c = s->loop.items;
     int inside = 0, outside = 0;
-    for (size_t i = 0; i < count; ++i) {
+    for (size_t i = 0; i < s->loop.count; ++i) {
         c[i].side = plane_table_side_at(t, c[i].planes, c[i].position, by);
         inside |= c[i].side < 0;
         outside |= c[i].side > 0;
     }
     if (!inside) return SHAPE_EMPTY;
     if (!outside) return SHAPE_SOUND;
-    s->other.count = 0;
-    for (size_t i = 0; i < count; ++i) {
-        const int side = c[i].side, next_side = c[i + 1 < count ? i + 1 : 0].side;
-        if (side <= 0) {
-            shape_corner *kept = buffer_append(&s->other, &c[i], 1);
-            if (!kept) return SHAPE_NO_MEMORY;
-            if (side == 0 && next_side > 0) kept->edge = by;
-        }
-        if (side * next_side < 0) {
-            const shape_corner made = {.planes = {face, c[i].edge, by}, .edge = side < 0 ? by : c[i].edge};
-            if (!push_corner(t, &s->other, &made)) return SHAPE_NO_MEMORY;
-        }
-    }
+    const shape_fault fault = copy_inside(s, t, face, by);
     const buffer swap = s->loop;
     s->loop = s->other;
     s->other = swap;
-    return SHAPE_SOUND;
+    return fault;
 }
 
-static shape_fault cut_face(brush_shape *s, const plane_table *t, const plane_ref cube[6], const plane_ref *planes, uint32_t count, uint32_t face)
+shape_fault brush_shape_face(brush_shape *s, const plane_table *t, const plane_ref cube[6], const plane_ref *planes, uint32_t count, uint32_t face)
 {
     if (!start_loop(s, t, cube, planes[face])) return SHAPE_NO_MEMORY;
     for (uint32_t i = 0; i < count; ++i) {
-        if (i == face) continue;
+        if (i == face || (i > face && planes[i] == planes[face])) continue;
         const shape_fault fault = cut_loop(s, t, planes[face], planes[i]);
         if (fault != SHAPE_SOUND) return fault;
     }
-    const shape_face made = {face, (uint32_t)s->corners.count, (uint32_t)s->loop.count};
-    if (!buffer_append(&s->faces, &made, 1) || !buffer_append(&s->corners, s->loop.items, s->loop.count)) return SHAPE_NO_MEMORY;
     const shape_corner *c = s->loop.items;
     for (size_t i = 0; i < s->loop.count; ++i)
         for (int k = 0; k < 6; ++k)
             if (c[i].edge >> 1 == cube[k] >> 1) return SHAPE_OPEN;
     return SHAPE_SOUND;
+}
+
+static shape_fault add_face(brush_shape *s, const plane_table *t, const plane_ref cube[6], const plane_ref *planes, uint32_t count, uint32_t face)
+{
+    const shape_fault fault = brush_shape_face(s, t, cube, planes, count, face);
+    if (fault != SHAPE_SOUND && fault != SHAPE_OPEN) return fault;
+    const shape_face made = {face, (uint32_t)s->corners.count, (uint32_t)s->loop.count};
+    return buffer_append(&s->faces, &made, 1) && buffer_append(&s->corners, s->loop.items, s->loop.count) ? fault : SHAPE_NO_MEMORY;
 }
 
 // A plane off the grid has no area within it: its square is empty behind the others, or stands out of the cube.
@@ -114,7 +132,7 @@ shape_fault brush_shape_cut(brush_shape *s, const plane_table *t, const plane_re
     s->corners.count = s->faces.count = 0;
     int open = 0;
     for (uint32_t face = 0; face < count; ++face) {
-        const shape_fault fault = cut_face(s, t, cube, planes, count, face);
+        const shape_fault fault = add_face(s, t, cube, planes, count, face);
         if (fault == SHAPE_NO_MEMORY) return fault;
         open |= fault == SHAPE_OPEN;
     }

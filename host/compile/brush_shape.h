@@ -32,10 +32,12 @@ typedef enum shape_fault {
 
 brush_shape brush_shape_make(const allocator *memory);
 void brush_shape_free(brush_shape *s);
-// The planes of the cube that everything must lie in, one step beyond the grid. 0: out of memory.
+// The planes of a cube round the grid, twice as wide, from which faces are cut. 0: out of memory.
 int brush_shape_cube(plane_table *t, plane_ref cube[6]);
 // planes: fronts outside, each at most once. The shape of an earlier call is overwritten.
 shape_fault brush_shape_cut(brush_shape *s, const plane_table *t, const plane_ref cube[6], const plane_ref *planes, uint32_t count);
+// One face alone, its corners in s->loop. Of equal planes the first has the face; a plane and its opposite leave nothing.
+shape_fault brush_shape_face(brush_shape *s, const plane_table *t, const plane_ref cube[6], const plane_ref *planes, uint32_t count, uint32_t face);
 // Whole steps, rounded outward, exactly: a corner on a whole step adds nothing.
 void brush_shape_bounds(const brush_shape *s, const plane_table *t, int32_t min[3], int32_t max[3]);
 

@@ -25,7 +25,7 @@ typedef enum brush_kind { BRUSH_ADD, BRUSH_SUBTRACT } brush_kind;
 typedef enum brush_role {
     BRUSH_STRUCTURE, // worldspawn, func_group, func_detail*; sky too: solid
     BRUSH_LIQUID,    // open: its faces become see-through walls, nothing is cut
-    BRUSH_ENTITY,    // of another brush entity: items or a mover, not structure
+    BRUSH_ENTITY,    // of another brush entity, or of cut-outs alone: items or a mover, not structure
     BRUSH_PORTAL,    // zone_portal: its mid-plane of the thin axis
 } brush_role;
 
@@ -34,6 +34,7 @@ typedef struct compile_face {
     uint32_t material;       // in compile_input.materials; COMPILE_NOTHING: clip, skip, hint, trigger, origin: makes no polygon
     double texture[2][4];    // u, v = row . (x, y, z, 1), metres in scene axes
     uint32_t line;           // in the file, for messages
+    uint32_t is_rounded;     // its points were not on the grid as written: the weld may lay its plane anew
 } compile_face;
 #define COMPILE_NOTHING UINT32_MAX
 
@@ -55,13 +56,20 @@ typedef struct compile_entity {
 
 typedef struct compile_material { const char *name; uint32_t flags; } compile_material; // MATERIAL_*
 
-typedef enum weld_kind { WELD_PLANE, WELD_POINT } weld_kind;
+typedef enum weld_kind { WELD_PLANE, WELD_POINT, WELD_CORNER } weld_kind;
 typedef struct weld_change { // one face of one brush got another plane
-    weld_kind kind;          // PLANE: shared with a near plane of another brush; POINT: two corners of the brush became one
+    weld_kind kind;          // PLANE: shared with a near plane of another brush; POINT: two corners of the brush became one;
+                             // CORNER: laid through a corner of another brush that it missed by a rounding
     uint32_t brush, line;    // line: of the face
     plane_ref from, to;
     double move;             // map units: the farthest that a corner of the brush went
 } weld_change;
+
+typedef struct compile_view compile_view; // of a stage that ended, see stages.h
+typedef struct compile_watch {
+    void *user;
+    void (*ended)(void *user, const compile_view *made);
+} compile_watch;
 
 typedef struct compile_input {
     arena memory;
@@ -77,7 +85,11 @@ typedef struct compile_input {
     weld_change *changes;          // weld_moves of them
     uint32_t points_rounded;       // face points that are not on the grid as written
     uint32_t brushes_dropped;      // empty ones and those of tool textures alone
+    double max_rounding;           // map units: the farthest that the grid took a point of a JSON scene's primitive
+    scene_builder *beside;         // what a JSON scene holds beside its brushes, owned; NULL: nothing. compile_items fills it up, so only once
+    uint32_t *portal_doors;        // by entity: door in `beside` of its portal, or SCENE_NONE; NULL: none has
     const char *path;
+    const compile_watch *watch;    // told of every stage behind this one; NULL, as it is made: nobody
 } compile_input;
 
 typedef struct input_options {
@@ -86,6 +98,12 @@ typedef struct input_options {
 } input_options;
 // [any thread] o NULL: the defaults. text need not end in a zero. On failure one line is reported and *out stays untouched.
 result compile_input_map(const char *path, const char *text, size_t size, const input_options *o, const allocator *memory, report *r, compile_input **out);
+struct import_files; // of host/import/import.h; NULL: the disk
+// The same of a JSON scene's brushes; all that stands beside them goes into `beside`.
+result compile_input_json(const char *path, const char *text, size_t size, const input_options *o, const struct import_files *files,
+                          const allocator *memory, report *r, compile_input **out);
+// Reads the file, .map or .json by its ending.
+result compile_input_open(const char *path, const input_options *o, const allocator *memory, report *r, compile_input **out);
 void compile_input_free(compile_input *in); // NULL is fine
 
 // ---- Relation table (relations.c) ----
@@ -141,6 +159,7 @@ typedef struct compiled_zones {
     arena memory;
     compile_mesh *mesh;        // cut by portals, T-junctions repaired: loops hold every vertex that lies on them
     uint32_t *polygon_zone;    // mesh.polygon_count
+    uint32_t (*seal_zones)[2]; // mesh.polygon_count: zones in front of a liquid that seals and behind it, UINT32_MAX: the void; both so of all else
     compiled_zone *zones;
     compiled_portal *portals;
     uint32_t zone_count, zones_sealed, portal_count, shells, leak, t_junctions_inserted;

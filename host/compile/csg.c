@@ -16,7 +16,6 @@ typedef struct surface_maker {
     face_cutter cutter;
     neighbour *neighbours; // by brush
     uint32_t *first_of;    // brush_count + 1
-    uint32_t *liquid_of;   // the material that a brush's liquid goes by
     polygon_soup *out;
 } surface_maker;
 
@@ -92,13 +91,21 @@ static int effect_on_structure(const csg_stage *s, uint32_t brush, const neighbo
     return sides & (same ? CSG_FRONT : CSG_BACK) ? CSG_REMOVE : NO_EFFECT;
 }
 
-// A liquid's face stays where air is on both sides, and no other liquid, unless that is of another kind and ranks lower.
-static int effect_on_liquid(const surface_maker *m, uint32_t brush, const neighbour *n, uint32_t *sides)
+static int has_visible_face_on(const csg_stage *s, uint32_t brush, plane_ref plane)
 {
-    const csg_stage *s = m->stage;
+    const brush_body *body = &s->bodies->of[brush];
+    const body_polygon *faces = (const body_polygon *)s->bodies->polygons.items + body->first_polygon;
+    for (uint32_t f = 0; f < body->polygon_count; ++f)
+        if (faces[f].shape.plane >> 1 == plane >> 1) return s->in->faces[faces[f].face].material != COMPILE_NOTHING;
+    return 0;
+}
+
+// A liquid's face stays where both of its sides are open, in other liquids too: raw brushes show it there. Of two faces in
+// one place, which are seen from both sides, one stays.
+static int effect_on_liquid(const csg_stage *s, const body_polygon *face, const neighbour *n, uint32_t *sides)
+{
     if (!is_liquid(s, n->brush)) return s->in->brushes[n->brush].kind == BRUSH_ADD ? CSG_REMOVE : CSG_KEEP;
-    const int higher = s->rank[n->brush].rank > s->rank[brush].rank, same = m->liquid_of[n->brush] == m->liquid_of[brush];
-    if (!higher && !(same && (*sides & CSG_FRONT))) return NO_EFFECT;
+    if (s->rank[n->brush].rank > s->rank[face->brush].rank || !has_visible_face_on(s, n->brush, face->shape.plane)) return NO_EFFECT;
     *sides = CSG_BACK | CSG_FRONT;
     return CSG_REMOVE;
 }
@@ -136,7 +143,7 @@ static result find_candidates(surface_maker *m, const body_polygon *face)
         if (!boxes_meet(min, max, &s->bodies->of[n->brush])) continue; // a body's box has room to spare
         uint32_t sides = sides_covered(s->bodies, n, face->shape.plane);
         if (!sides) continue;
-        const int effect = liquid ? effect_on_liquid(m, face->brush, n, &sides) : effect_on_structure(s, face->brush, n, sides);
+        const int effect = liquid ? effect_on_liquid(s, face, n, &sides) : effect_on_structure(s, face->brush, n, sides);
         if (effect == NO_EFFECT) continue;
         const csg_candidate candidate = {n->brush, sides, (csg_effect)effect};
         if (!buffer_append(&c->candidates, &candidate, 1)) return RESULT_NO_MEMORY;
@@ -177,7 +184,6 @@ static result add_brush(surface_maker *m, uint32_t brush)
     const size_t before = m->out->polygons.count;
     for (uint32_t f = 0; f < body->polygon_count; ++f) {
         const body_polygon *face = (const body_polygon *)s->bodies->polygons.items + body->first_polygon + f;
-        if (is_liquid(s, brush) && s->in->faces[face->face].material == COMPILE_NOTHING) continue; // nothing to close
         result done = find_candidates(m, face);
         if (done == RESULT_OK) done = face_cutter_run(&m->cutter, face, m->out);
         if (done != RESULT_OK) return done;
@@ -186,28 +192,13 @@ static result add_brush(surface_maker *m, uint32_t brush)
     return RESULT_OK;
 }
 
-static void name_liquids(surface_maker *m)
-{
-    const compile_input *in = m->stage->in;
-    for (uint32_t b = 0; b < in->brush_count; ++b) {
-        m->liquid_of[b] = COMPILE_NOTHING;
-        for (uint32_t f = 0; f < in->brushes[b].face_count; ++f) {
-            const uint32_t material = in->faces[in->brushes[b].first_face + f].material;
-            if (material < m->liquid_of[b]) m->liquid_of[b] = material;
-        }
-    }
-}
-
 result csg_surface(const csg_stage *stage, const allocator *memory, polygon_soup *out)
 {
     const uint32_t n = stage->in->brush_count;
     *out = (polygon_soup){buffer_make(memory, sizeof(body_polygon)), buffer_make(memory, sizeof(polygon_edge))};
     surface_maker m = {.stage = stage, .cutter = face_cutter_make(stage->in, stage->bodies, stage->field, memory), .out = out};
-    m.liquid_of = memory_alloc(memory, n, sizeof *m.liquid_of);
-    result done = m.liquid_of && make_neighbours(&m, memory) ? RESULT_OK : RESULT_NO_MEMORY;
-    if (done == RESULT_OK) name_liquids(&m);
+    result done = make_neighbours(&m, memory) ? RESULT_OK : RESULT_NO_MEMORY;
     for (uint32_t b = 0; done == RESULT_OK && b < n; ++b) done = add_brush(&m, b);
-    memory_free(memory, m.liquid_of, n, sizeof *m.liquid_of);
     memory_free(memory, m.first_of, (size_t)n + 2, sizeof *m.first_of);
     memory_free(memory, m.neighbours, 2 * (size_t)stage->relations->pair_count, sizeof *m.neighbours);
     face_cutter_free(&m.cutter);

@@ -58,6 +58,7 @@ void compile_input_free(compile_input *in)
     if (!in) return;
     const allocator *memory = in->memory.memory;
     plane_table_free(in->planes);
+    scene_builder_close(in->beside);
     arena_free(&in->memory);
     memory_free(memory, in, 1, sizeof *in);
 }
@@ -173,6 +174,7 @@ result input_draft_finish(input_draft *d, compile_input **out)
 {
     result done = input_snap_corners(d);
     if (done == RESULT_OK) done = input_weld_planes(d);
+    if (done == RESULT_OK) done = input_join_corners(d);
     if (done != RESULT_OK) return done;
     compile_input *in = d->in;
     in->brushes = to_arena(d, &d->brushes);

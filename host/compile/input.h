@@ -37,6 +37,7 @@ result input_draft_brush(input_draft *d, const compile_brush *brush, const compi
 
 result input_snap_corners(input_draft *d); // input_snap.c: corners of one brush
 result input_weld_planes(input_draft *d);  // input_weld.c: planes of different brushes
+result input_join_corners(input_draft *d); // input_join.c: corners of one brush to faces of others, where rounding parted them
 
 // Corners of a shape that are different points but closer than `reach` steps, counted by pairs. input_replace.c
 uint32_t shape_close_pairs(const brush_shape *s, const plane_table *t, double reach);
@@ -44,13 +45,14 @@ uint32_t shape_close_pairs(const brush_shape *s, const plane_table *t, double re
 typedef struct plane_replacement {
     uint32_t brush;
     const plane_ref *planes; // one a face of the brush
-    weld_kind kind;          // WELD_POINT: fewer close pairs are wanted; WELD_PLANE: not more
+    weld_kind kind;          // WELD_POINT: fewer close pairs are wanted; else not more
 } plane_replacement;
 typedef enum replace_verdict { REPLACE_DONE, REPLACE_REFUSED } replace_verdict;
 result input_cut_brush(input_draft *d, uint32_t brush); // into d->shape
 // d->shape is the brush as it is, before and after. Done, and listed, if the brush keeps all its faces, no corner goes
 // farther than the weld, and the close pairs are as wanted.
 result input_replace_planes(input_draft *d, const plane_replacement *r, replace_verdict *out);
+result input_try_planes(input_draft *d, const plane_replacement *r, replace_verdict *out); // the same verdict, but nothing is done
 
 // Welds and hands out.
 result input_draft_finish(input_draft *d, compile_input **out);

@@ -75,6 +75,7 @@ static result take_face(map_input *m, const map_face *face, const char *where, c
         return report_error(m->reader.report, m->reader.path, face->line, "%s: the three points of a face lie on one line%s", where,
                             rounded == m->draft.in->points_rounded ? "; move one" : " of the grid; move one or take a finer grid");
     *out = (compile_face){.plane = plane_table_add(m->draft.in->planes, &outward), .material = COMPILE_NOTHING, .line = (uint32_t)face->line};
+    out->is_rounded = rounded != m->draft.in->points_rounded;
     texture_rows(face, &outward, out->texture);
     const texture_kind kind = texture_kind_of(face->texture);
     if (kind != TEXTURE_TOOL) out->material = input_draft_material(&m->draft, face->texture.text, face->texture.length, texture_material_flags(kind));
@@ -101,17 +102,20 @@ static entity_use use_of(map_word class_name)
     return use;
 }
 
-typedef struct brush_look { int visible, liquid, wall; } brush_look;
+typedef struct brush_look { int visible, liquid, fence; } brush_look; // liquid: a face of it; fence: all that is to be seen has holes
 
 static brush_look look_of(const map_face *faces, size_t count)
 {
     brush_look look = {0};
+    int holes = 0, rest = 0;
     for (size_t i = 0; i < count; ++i) {
         const texture_kind kind = texture_kind_of(faces[i].texture);
         look.visible |= kind != TEXTURE_TOOL;
         look.liquid |= kind == TEXTURE_LIQUID;
-        look.wall |= kind != TEXTURE_TOOL && kind != TEXTURE_LIQUID;
+        holes |= kind == TEXTURE_CUT_OUT;
+        rest |= kind != TEXTURE_TOOL && kind != TEXTURE_CUT_OUT;
     }
+    look.fence = holes && !rest;
     return look;
 }
 
@@ -134,7 +138,8 @@ static result take_brush(map_input *m, size_t number, const entity_use *use, uin
         if (done != RESULT_OK) return done;
     }
     compile_brush made = {.entity = entity, .kind = use->kind, .role = use->role};
-    if (made.role == BRUSH_STRUCTURE && made.kind == BRUSH_ADD && look.liquid && !look.wall) made.role = BRUSH_LIQUID;
+    if (made.role == BRUSH_STRUCTURE && made.kind == BRUSH_ADD && look.liquid) made.role = BRUSH_LIQUID;
+    if (made.role == BRUSH_STRUCTURE && made.kind == BRUSH_ADD && look.fence) made.role = BRUSH_ENTITY; // what lies behind shows through it
     brush_verdict verdict;
     return input_draft_brush(&m->draft, &made, faces, (uint32_t)brush->face_count, where, (uint32_t)brush->line, &verdict);
 }
@@ -169,11 +174,10 @@ static result take_origin(map_input *m, compile_entity *out)
 {
     const map_entity *e = &m->entity;
     const map_key *origin = map_entity_key(e, "origin");
-    if (!origin) return RESULT_OK;
+    if (!origin || e->brushes.count) return RESULT_OK; // of a brush entity nobody asks for it, though all its brushes are dropped
     double units[3] = {0};
     int good = map_word_numbers(origin->value, units, 3);
     for (int k = 0; good && k < 3; ++k) good = fabs(units[k]) <= MAP_COORDINATE_MOST;
-    if (!good && e->brushes.count) return RESULT_OK; // of a brush entity nobody asks for it
     if (!good)
         return report_error(m->reader.report, m->reader.path, origin->line, "entity %u: \"origin\" takes three numbers within 2^20; repair its value",
                             e->number);

@@ -101,22 +101,44 @@ result input_cut_brush(input_draft *d, uint32_t number)
     return fault == SHAPE_NO_MEMORY ? report_no_memory(d->report, d->path) : RESULT_OK;
 }
 
-result input_replace_planes(input_draft *d, const plane_replacement *r, replace_verdict *out)
+// d->shape becomes the brush with those planes and d->before what it was, also where that is refused.
+static result cut_anew(input_draft *d, const plane_replacement *r, double *move, replace_verdict *out)
 {
-    *out = REPLACE_REFUSED;
+    const compile_brush *brush = (const compile_brush *)d->brushes.items + r->brush;
+    swap_shapes(d);
+    const shape_fault fault = brush_shape_cut(&d->shape, d->in->planes, d->cube, r->planes, brush->face_count);
+    if (fault == SHAPE_NO_MEMORY) return report_no_memory(d->report, d->path);
+    *out = fault == SHAPE_SOUND && is_wanted(d, r, move) ? REPLACE_DONE : REPLACE_REFUSED;
+    return RESULT_OK;
+}
+
+static int is_change(const input_draft *d, const plane_replacement *r)
+{
     const compile_brush *brush = (const compile_brush *)d->brushes.items + r->brush;
     const compile_face *faces = (const compile_face *)d->faces.items + brush->first_face;
     uint32_t changed = 0;
     for (uint32_t i = 0; i < brush->face_count; ++i) changed += faces[i].plane != r->planes[i];
-    if (!changed || d->shape.corners.count > CORNERS_MOST || planes_repeat(r->planes, brush->face_count)) return RESULT_OK;
-    swap_shapes(d);
-    const shape_fault fault = brush_shape_cut(&d->shape, d->in->planes, d->cube, r->planes, brush->face_count);
-    if (fault == SHAPE_NO_MEMORY) return report_no_memory(d->report, d->path);
+    return changed && d->shape.corners.count <= CORNERS_MOST && !planes_repeat(r->planes, brush->face_count);
+}
+
+result input_try_planes(input_draft *d, const plane_replacement *r, replace_verdict *out)
+{
     double move;
-    if (fault == SHAPE_SOUND && is_wanted(d, r, &move)) {
-        *out = REPLACE_DONE;
-        return list_changes(d, r, move);
-    }
+    *out = REPLACE_REFUSED;
+    if (!is_change(d, r)) return RESULT_OK;
+    const result done = cut_anew(d, r, &move, out);
+    if (done == RESULT_OK) swap_shapes(d);
+    return done;
+}
+
+result input_replace_planes(input_draft *d, const plane_replacement *r, replace_verdict *out)
+{
+    double move;
+    *out = REPLACE_REFUSED;
+    if (!is_change(d, r)) return RESULT_OK;
+    const result done = cut_anew(d, r, &move, out);
+    if (done != RESULT_OK) return done;
+    if (*out == REPLACE_DONE) return list_changes(d, r, move);
     swap_shapes(d);
     return RESULT_OK;
 }

@@ -1,9 +1,9 @@
 // Weld of nearly equal planes of different brushes: where walls meant to be one stand a rounding apart, the gap between them
 // would be a zone of its own.
 // SPDX-License-Identifier: MIT
-// Invariant: in a cluster every plane is near every other (complete linkage), so nothing drifts along a chain; planes are
-// ordered by their numbers, never by their place in the file; a brush that would change its faces keeps its plane.
-#include "input.h"
+// Invariant: what may become one is in input_cluster.c; planes are ordered by their numbers, never by their place in the
+// file; a brush that would change its faces keeps its plane.
+#include "input_cluster.h"
 
 #include "../core/box_tree.h"
 
@@ -11,19 +11,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CLUSTER_MOST = 32, PAIRS_AT_FIRST = 1 << 16, PAIRS_MOST = 1 << 20 };
-static const double TURN_MOST = 1.0 / 1024; // sine between two normals: 1/256 of a unit over a face of four; larger is meant
+enum { PAIRS_AT_FIRST = 1 << 16, PAIRS_MOST = 1 << 20 };
+static const double TURN_MOST = 1.0 / 128; // sine between two normals: the weld over a face of four units; larger is meant
+static const double APART_MOST = 2;        // welds between two planes: either may go by one
 
 typedef struct unit_plane { double normal[3], offset; } unit_plane;
-
-typedef struct near_pair {
-    uint32_t a, b; // planes, not references; a < b
-    double apart;  // steps, the most that any two brushes have
-} near_pair;
-
-typedef struct cluster {
-    uint32_t planes[CLUSTER_MOST], count;
-} cluster;
 
 typedef struct weld {
     input_draft *draft;
@@ -32,15 +24,9 @@ typedef struct weld {
     buffer pairs;    // near_pair
     size_t room;     // as many pairs before they are gone through for repeats
     int given_up;    // more than PAIRS_MOST: this is no level, and a weld would take for ever
-    buffer clusters; // cluster; empty ones are merged into others
-    buffer number;   // uint32_t: cluster + 1 of each plane, 0 none
+    buffer to;       // plane_ref by plane: see plane_clusters_find
     buffer planes;   // plane_ref: of one brush
 } weld;
-
-static const cull_wide_plane *plane_at(const weld *w, uint32_t plane)
-{
-    return plane_table_canonical(w->draft->in->planes, 2 * plane);
-}
 
 // ---- Which planes are near ----
 
@@ -108,7 +94,7 @@ static result compare_brushes(weld *w, const compile_brush *a, const compile_bru
             const uint32_t p = faces[a->first_face + i].plane >> 1, q = faces[b->first_face + j].plane >> 1;
             if (p == q) continue;
             const near_pair pair = {p < q ? p : q, p < q ? q : p, apart_in(&units[p], &units[q], min, max)};
-            if (pair.apart <= d->weld && !buffer_append(&w->pairs, &pair, 1)) return RESULT_NO_MEMORY;
+            if (pair.apart <= APART_MOST * d->weld && !buffer_append(&w->pairs, &pair, 1)) return RESULT_NO_MEMORY;
         }
     return RESULT_OK;
 }
@@ -156,130 +142,12 @@ static result find_pairs(weld *w)
     return done;
 }
 
-// ---- Clusters ----
-
-static int same_pair(const void *left, const void *right)
-{
-    const near_pair *a = left, *b = right;
-    if (a->a != b->a) return a->a < b->a ? -1 : 1;
-    return a->b < b->b ? -1 : a->b > b->b;
-}
-
-static int is_near(const near_pair *pairs, size_t count, uint32_t a, uint32_t b)
-{
-    const near_pair key = {a < b ? a : b, a < b ? b : a, 0};
-    return bsearch(&key, pairs, count, sizeof key, same_pair) != NULL;
-}
-
-static int compare_planes(const cull_wide_plane *a, const cull_wide_plane *b)
-{
-    for (int k = 0; k < 3; ++k)
-        if (a->normal[k] != b->normal[k]) return a->normal[k] < b->normal[k] ? -1 : 1;
-    return cull_wide_sign(cull_wide_subtract(a->offset, b->offset));
-}
-
-typedef struct link { // a pair to be linked, with what it is ordered by
-    double apart;
-    cull_wide_plane low, high;
-    uint32_t a, b;
-} link;
-
-static int compare_links(const void *left, const void *right)
-{
-    const link *a = left, *b = right;
-    if (a->apart != b->apart) return a->apart < b->apart ? -1 : 1;
-    const int low = compare_planes(&a->low, &b->low);
-    return low ? low : compare_planes(&a->high, &b->high);
-}
-
-static cluster *cluster_of(weld *w, uint32_t plane)
-{
-    uint32_t *number = w->number.items;
-    if (!number[plane]) {
-        const cluster made = {{plane}, 1};
-        if (!buffer_append(&w->clusters, &made, 1)) return NULL;
-        number[plane] = (uint32_t)w->clusters.count;
-    }
-    return (cluster *)w->clusters.items + (number[plane] - 1);
-}
-
-static result join(weld *w, const near_pair *pairs, size_t count, const link *l)
-{
-    if (!cluster_of(w, l->a) || !cluster_of(w, l->b)) return RESULT_NO_MEMORY;
-    cluster *to = cluster_of(w, l->a), *from = cluster_of(w, l->b);
-    if (to == from || to->count + from->count > CLUSTER_MOST) return RESULT_OK;
-    for (uint32_t i = 0; i < to->count; ++i)
-        for (uint32_t j = 0; j < from->count; ++j)
-            if (!is_near(pairs, count, to->planes[i], from->planes[j])) return RESULT_OK;
-    uint32_t *number = w->number.items;
-    for (uint32_t j = 0; j < from->count; ++j) {
-        number[from->planes[j]] = number[l->a];
-        to->planes[to->count++] = from->planes[j];
-    }
-    from->count = 0;
-    return RESULT_OK;
-}
-
-static result find_clusters(weld *w)
-{
-    near_pair *pairs = w->pairs.items;
-    qsort(pairs, w->pairs.count, sizeof *pairs, compare_by_number);
-    const size_t count = w->pairs.count = once_each(pairs, w->pairs.count);
-    const uint32_t planes = plane_table_count(w->draft->in->planes);
-    uint32_t *number = buffer_push(&w->number, planes);
-    buffer links = buffer_make(w->pairs.memory, sizeof(link));
-    link *l = buffer_push(&links, count);
-    result done = number && l ? RESULT_OK : RESULT_NO_MEMORY;
-    if (number) memset(number, 0, planes * sizeof *number);
-    for (size_t i = 0; i < count && done == RESULT_OK; ++i) {
-        const cull_wide_plane *a = plane_at(w, pairs[i].a), *b = plane_at(w, pairs[i].b);
-        const int forward = compare_planes(a, b) < 0;
-        l[i] = (link){pairs[i].apart, forward ? *a : *b, forward ? *b : *a, pairs[i].a, pairs[i].b};
-    }
-    if (done == RESULT_OK) qsort(l, count, sizeof *l, compare_links);
-    for (size_t i = 0; i < count && done == RESULT_OK; ++i) done = join(w, pairs, count, &l[i]);
-    buffer_free(&links);
-    return done;
-}
-
 // ---- One plane for each ----
-
-static uint32_t bits_of(const cull_wide_plane *p)
-{
-    uint32_t bits = 0;
-    for (int k = 0; k < 3; ++k)
-        for (uint64_t m = cull_magnitude(p->normal[k]); m; m >>= 1) bits++;
-    const cull_wide size = cull_wide_magnitude(p->offset);
-    for (uint64_t m = size.high; m; m >>= 1) bits++;
-    for (uint64_t m = size.low; m; m >>= 1) bits++;
-    return bits;
-}
-
-static uint32_t representative(const weld *w, const cluster *c)
-{
-    uint32_t best = c->planes[0];
-    for (uint32_t i = 1; i < c->count; ++i) {
-        const cull_wide_plane *one = plane_at(w, c->planes[i]), *other = plane_at(w, best);
-        const uint32_t bits = bits_of(one), least = bits_of(other);
-        if (bits < least || (bits == least && compare_planes(one, other) < 0)) best = c->planes[i];
-    }
-    return best;
-}
-
-// Clusters' first planes become their representatives: what follows only reads those.
-static void choose(weld *w)
-{
-    cluster *clusters = w->clusters.items;
-    for (size_t i = 0; i < w->clusters.count; ++i)
-        if (clusters[i].count) clusters[i].planes[0] = representative(w, &clusters[i]);
-}
 
 static plane_ref welded(const weld *w, plane_ref plane)
 {
-    const uint32_t number = ((const uint32_t *)w->number.items)[plane >> 1];
-    if (!number) return plane;
-    const plane_ref to = 2 * ((const cluster *)w->clusters.items)[number - 1].planes[0];
-    if (to >> 1 == plane >> 1) return plane;
+    const plane_ref to = plane >> 1 < w->to.count ? ((const plane_ref *)w->to.items)[plane >> 1] : PLANE_NONE;
+    if (to == PLANE_NONE) return plane;
     const cull_wide_plane before = plane_table_get(w->draft->in->planes, plane), after = plane_table_get(w->draft->in->planes, to);
     return cull_normals_dot_sign(&before, &after) < 0 ? plane_ref_flipped(to) : to;
 }
@@ -317,8 +185,10 @@ static result weld_all(weld *w)
     if (w->given_up)
         report_warning(w->draft->report, w->draft->path, 0, "over %d pairs of nearly equal planes; none is welded", PAIRS_MOST);
     if (done == RESULT_OK && (w->pairs.count == 0 || w->given_up)) return done;
-    if (done == RESULT_OK) done = find_clusters(w);
-    if (done == RESULT_OK) choose(w);
+    if (done != RESULT_OK) return done;
+    qsort(w->pairs.items, w->pairs.count, sizeof(near_pair), compare_by_number);
+    w->pairs.count = once_each(w->pairs.items, w->pairs.count);
+    done = plane_clusters_find(w->draft, w->pairs.items, w->pairs.count, &w->to);
     const compile_brush *brushes = w->draft->brushes.items;
     for (uint32_t i = 0; i < w->draft->brushes.count && done == RESULT_OK; ++i)
         if (is_welded(&brushes[i])) done = weld_brush(w, i);
@@ -333,12 +203,11 @@ result input_weld_planes(input_draft *d)
               .boxes = buffer_make(memory, sizeof(tree_box)),
               .pairs = buffer_make(memory, sizeof(near_pair)),
               .room = PAIRS_AT_FIRST,
-              .clusters = buffer_make(memory, sizeof(cluster)),
-              .number = buffer_make(memory, sizeof(uint32_t)),
+              .to = buffer_make(memory, sizeof(plane_ref)),
               .planes = buffer_make(memory, sizeof(plane_ref))};
     const uint32_t errors = d->report->errors;
     const result done = d->brushes.count ? weld_all(&w) : RESULT_OK;
-    buffer *const all[] = {&w.units, &w.boxes, &w.pairs, &w.clusters, &w.number, &w.planes};
+    buffer *const all[] = {&w.units, &w.boxes, &w.pairs, &w.to, &w.planes};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) buffer_free(all[i]);
     return done != RESULT_OK && d->report->errors == errors ? report_no_memory(d->report, d->path) : done;
 }

@@ -45,11 +45,20 @@ int item_goes_straight(const item_job *j, const compile_polygon *p, uint32_t pla
     return plane_table_side_at(j->in->planes, v->planes, v->position, edges[before]) == 0;
 }
 
+const char *item_key(const compile_entity *e, const char *name)
+{
+    const char *found = NULL;
+    for (uint32_t i = 0; i < e->key_count; ++i)
+        if (strcmp(e->keys[2 * i], name) == 0) found = e->keys[2 * i + 1];
+    return found;
+}
+
 // ---- Structure ----
 
 typedef struct structure {
     item_job *job;
     rounded_mesh rounded;
+    wall_lists lists;
     loop_triangulator triangulator;
     uint32_t *first_vertex; // by polygon: in the builder; VERTEX_NONE: no item
     uint32_t *order;        // polygons by entity
@@ -158,7 +167,8 @@ static result add_item(structure *s, uint32_t polygon)
     item.exact = item_exact_plane(j, p->plane, &exact) ? &exact : NULL;
     s->is_item[polygon] = 1;
     s->triangle_count += triangle_count;
-    return scene_builder_item(j->builder, &item);
+    done = scene_builder_item(j->builder, &item);
+    return done == RESULT_OK ? wall_lists_tell(&s->lists, polygon) : done;
 }
 
 static result structure_open(structure *s, item_job *j)
@@ -182,6 +192,7 @@ static void structure_close(structure *s)
     buffer_free(&s->triangles);
     buffer_free(&s->all);
     loop_triangulator_free(&s->triangulator);
+    wall_lists_free(&s->lists);
     rounded_mesh_free(&s->rounded);
     memory_free(s->job->memory, s->first_vertex, count, sizeof *s->first_vertex);
     memory_free(s->job->memory, s->order, count, sizeof *s->order);
@@ -192,6 +203,7 @@ static result structure_items(structure *s)
 {
     const compile_mesh *m = s->job->zones->mesh;
     result done = rounded_mesh_make(s->job, &s->rounded);
+    if (done == RESULT_OK) done = wall_lists_make(s->job, &s->rounded, &s->lists);
     for (uint32_t i = 0; i < m->polygon_count && done == RESULT_OK; ++i)
         if (s->first_vertex[s->order[i]] != VERTEX_NONE) done = add_item(s, s->order[i]);
     return done;
@@ -218,6 +230,9 @@ static result fill(item_job *j, scene **out, compile_checks *checks)
     if (done == RESULT_OK) done = add_materials(j);
     if (done == RESULT_OK) done = all_vertices(&s);
     if (done == RESULT_OK) done = items_entities(j);
+    if (done == RESULT_OK) done = items_models(j);
+    if (done == RESULT_OK) items_normal_maps(j);
+    if (done == RESULT_OK && !j->in->beside) done = items_starts(j); // a JSON scene has paths of its own
     if (done == RESULT_OK) done = items_zones(j);
     if (done == RESULT_OK) done = structure_items(&s);
     const check_input check = {j, &s.rounded, s.all.items, s.all.count / 3, s.is_item};
@@ -226,7 +241,7 @@ static result fill(item_job *j, scene **out, compile_checks *checks)
     checks->items = scene_builder_item_count(j->builder);
     structure_close(&s);
     if (done == RESULT_OK) done = scene_builder_finish(j->builder, j->in->path, j->report, out);
-    if (done == RESULT_OK) checks->degenerate_triangles = (*out)->flat_triangles;
+    if (done == RESULT_OK) checks->degenerate_triangles = items_flat_triangles(j, *out);
     return done;
 }
 
@@ -249,10 +264,13 @@ result compile_items(const compile_input *in, const compiled_zones *z, report *r
     j.material_of = memory_alloc(memory, in->material_count, sizeof *j.material_of);
     j.mover_of = memory_alloc(memory, in->entity_count, sizeof *j.mover_of);
     j.door_of = memory_alloc(memory, in->entity_count, sizeof *j.door_of);
-    result done = j.material_of && j.mover_of && j.door_of ? scene_builder_open(memory, &j.builder) : RESULT_NO_MEMORY;
+    result done = j.material_of && j.mover_of && j.door_of ? RESULT_OK : RESULT_NO_MEMORY;
+    j.builder = in->beside;
+    if (done == RESULT_OK && !in->beside) done = scene_builder_open(memory, &j.builder);
     for (uint32_t e = 0; e < in->entity_count && done == RESULT_OK; ++e) j.mover_of[e] = j.door_of[e] = SCENE_NONE;
     if (done == RESULT_OK) done = fill(&j, out, checks);
-    scene_builder_close(j.builder);
+    if (!in->beside) scene_builder_close(j.builder);
+    brush_bodies_free(&j.bodies);
     buffer *const all[] = {&j.points, &j.triangles, &j.counts, &j.loop};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) buffer_free(all[i]);
     memory_free(memory, j.material_of, in->material_count, sizeof *j.material_of);

@@ -5,7 +5,11 @@
 #define PORTCULLIS_HOST_COMPILE_ITEMS_H
 
 #include "compile.h"
+#include "brush_polygons.h"
+#include "plane_polygon.h"
 #include "plane_table.h"
+
+#define ITEM_UNITS_PER_METRE 32.0 // of a map
 
 typedef struct item_job {
     const compile_input *in;
@@ -16,6 +20,7 @@ typedef struct item_job {
     uint32_t *material_of; // of the input's, in the builder
     uint32_t *mover_of;    // by entity; SCENE_NONE
     uint32_t *door_of;     // by entity; SCENE_NONE
+    brush_bodies bodies;   // of brush entities, from items_entities on
     buffer points, triangles, counts, loop; // builder_vertex, uint32_t (twice), uint32_t: of one item
 } item_job;
 
@@ -25,12 +30,26 @@ int item_exact_plane(const item_job *j, plane_ref ref, cull_exact_plane *out); /
 void item_texcoord(const compile_face *face, const double metres[3], float out[2]);
 // 1 when the polygon's loop goes straight on at that place: the next vertex lies on the plane of the edge before, exactly.
 int item_goes_straight(const item_job *j, const compile_polygon *p, uint32_t place);
+const char *item_key(const compile_entity *e, const char *name); // the last one counts; NULL: it has none
 int item_object_name(const item_job *j, uint32_t entity, char *out, size_t size); // its length
 
 // Brush entities as items and movers, bodies, places, lights (items_entities.c).
 result items_entities(item_job *j);
+// Meshes of misc_model entities (items_models.c).
+result items_models(item_job *j);
+// The camera path "starts" of a map's player starts (items_starts.c).
+result items_starts(item_job *j);
+// Marks the builder's materials that worldspawn's "_normal_maps" lists; all are in it (items_normal_maps.c).
+void items_normal_maps(item_job *j);
 // Zones by hulls, portals with their doors; behind items_entities (items_zones.c).
 result items_zones(item_job *j);
+
+// ---- The doors that close a portal (items_doors.c) ----
+
+typedef struct portal_piece_of_door { plane_polygon shape; uint32_t door; } portal_piece_of_door; // in portal_pieces.edges; door: or SCENE_NONE
+typedef struct portal_pieces { buffer pieces, edges; } portal_pieces; // portal_piece_of_door, polygon_edge: of one portal
+// The whole portal as one piece, or a piece for each leaf that hides its part, where leaves hide all of it. Both buffers are emptied before.
+result portal_pieces_make(const item_job *j, const compiled_portal *portal, portal_pieces *out);
 
 // ---- Vertices rounded to the step that the scene will have (items_round.c) ----
 
@@ -43,6 +62,22 @@ typedef struct rounded_mesh {
 // All vertices and portals are in the builder.
 result rounded_mesh_make(const item_job *j, rounded_mesh *out);
 void rounded_mesh_free(rounded_mesh *m); // of zeros is fine
+
+// ---- Which zones list a wall (items_listing.c) ----
+
+#define WALLS_SEVERAL (SCENE_NONE - 1)
+typedef struct wall_lists {
+    const item_job *job;
+    const rounded_mesh *rounded;
+    uint32_t *zone_of;    // by vertex: of its walls; SCENE_NONE: it has none, WALLS_SEVERAL
+    buffer zones, joined; // of vertices with several, sorted; of portals' vertices, sorted
+    buffer found;         // uint32_t: of one wall
+} wall_lists;
+result wall_lists_make(const item_job *j, const rounded_mesh *rounded, wall_lists *out);
+void wall_lists_free(wall_lists *l); // of zeros is fine
+result wall_lists_tell(wall_lists *l, uint32_t polygon); // of the item that was added last
+// 1: each zone that it touches lists it: a liquid's surface is not cut where portals part it.
+int item_zones_by_box(const item_job *j, uint32_t polygon);
 
 // ---- Triangles of one loop (items_triangulate.c) ----
 
@@ -76,6 +111,8 @@ typedef struct check_input {
     size_t triangle_count;
     const uint8_t *is_item;    // by polygon of the mesh
 } check_input;
+// Of walls and brushes that move, in the finished scene; a mesh beside them may have such as its file has them.
+uint32_t items_flat_triangles(const item_job *j, const scene *s);
 result items_check(const check_input *c, compile_checks *out); // adds open edges, T-junctions, degenerate triangles
 
 #endif

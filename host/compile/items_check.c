@@ -224,6 +224,31 @@ static result count_t_junctions(const check_input *c, uint32_t *out)
     return done;
 }
 
+// ---- Triangles without area ----
+
+static int is_flat(const scene *s, const uint32_t t[3])
+{
+    const cull_vec3 a = s->positions[t[0]], b = s->positions[t[1]], c = s->positions[t[2]];
+    const double u[3] = {(double)b.x - (double)a.x, (double)b.y - (double)a.y, (double)b.z - (double)a.z};
+    const double v[3] = {(double)c.x - (double)a.x, (double)c.y - (double)a.y, (double)c.z - (double)a.z};
+    return u[1] * v[2] == u[2] * v[1] && u[2] * v[0] == u[0] * v[2] && u[0] * v[1] == u[1] * v[0];
+}
+
+static uint32_t count_flat(const scene *s, uint32_t item)
+{
+    uint32_t count = 0;
+    for (uint32_t i = s->items[item].first_index; i < s->items[item].first_index + s->items[item].index_count; i += 3) count += is_flat(s, s->indices + i) != 0;
+    return count;
+}
+
+uint32_t items_flat_triangles(const item_job *j, const scene *s)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < s->item_count; ++i) count += s->items[i].flags & CULL_ITEM_WALL ? count_flat(s, i) : 0;
+    for (uint32_t e = 0; e < j->in->entity_count; ++e) count += j->mover_of[e] == SCENE_NONE ? 0 : count_flat(s, s->item_count + j->mover_of[e]);
+    return count;
+}
+
 result items_check(const check_input *c, compile_checks *out)
 {
     const result done = count_open(c, &out->open_edges);

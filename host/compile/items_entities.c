@@ -12,19 +12,11 @@
 #include <string.h>
 
 enum { NAME_BYTES = 96 };
-static const double UNITS_PER_METRE = 32, LIGHT_UNITS = 300; // a light that names no strength
+static const double UNITS_PER_METRE = ITEM_UNITS_PER_METRE, LIGHT_UNITS = 300; // a light that names no strength
 
 static map_word word_of(const char *text)
 {
     return (map_word){text, strlen(text)};
-}
-
-static const char *key_of(const compile_entity *e, const char *name)
-{
-    const char *found = NULL;
-    for (uint32_t i = 0; i < e->key_count; ++i)
-        if (strcmp(e->keys[2 * i], name) == 0) found = e->keys[2 * i + 1];
-    return found;
 }
 
 // ---- Doors ----
@@ -192,7 +184,8 @@ static result add_body(item_job *j, uint32_t brush, const double offset[3], soli
         memcpy(planes[f].normal, plane, sizeof planes[f].normal);
         planes[f].distance = -plane[3] + ((plane[0] * offset[0] + plane[1] * offset[1]) + plane[2] * offset[2]);
     }
-    const result done = scene_builder_solid(j->builder, kind, planes, b->face_count, min, max);
+    const result done = b->kind == BRUSH_SUBTRACT ? scene_builder_solid_subtract(j->builder, planes, b->face_count)
+                                                  : scene_builder_solid(j->builder, kind, planes, b->face_count, min, max);
     memory_free(j->memory, planes, b->face_count, sizeof *planes);
     return done;
 }
@@ -214,7 +207,7 @@ static result add_bodies(item_job *j, const brush_bodies *bodies, uint32_t entit
     for (int place = 0; place < (memcmp(offset, nowhere, sizeof offset) != 0 ? 2 : 1); ++place)
         for (uint32_t b = e->first_brush; b < e->first_brush + e->brush_count && done == RESULT_OK; ++b) {
             const compile_brush *brush = &j->in->brushes[b];
-            if (brush->role == BRUSH_PORTAL || brush->kind == BRUSH_SUBTRACT) continue;
+            if (brush->role == BRUSH_PORTAL) continue;
             const solid_kind kind = brush->role == BRUSH_LIQUID ? SOLID_LIQUID : body == BODY_STRUCTURE || brush->role == BRUSH_STRUCTURE ? SOLID_STRUCTURE : SOLID_ENTITY;
             done = add_body(j, b, place ? offset : nowhere, kind);
         }
@@ -225,7 +218,7 @@ static result add_bodies(item_job *j, const brush_bodies *bodies, uint32_t entit
 
 static result add_light(item_job *j, const compile_entity *e)
 {
-    const char *strength = key_of(e, "light"), *colour = key_of(e, "_color");
+    const char *strength = item_key(e, "light"), *colour = item_key(e, "_color");
     double units = LIGHT_UNITS, parts[3] = {1, 1, 1};
     if (strength && !(map_word_numbers(word_of(strength), &units, 1) && units > 0 && units < 1e6)) units = LIGHT_UNITS;
     if (colour && !map_word_numbers(word_of(colour), parts, 3)) parts[0] = parts[1] = parts[2] = 1;
@@ -278,10 +271,10 @@ static result add_entity(item_job *j, const brush_bodies *bodies, uint32_t entit
 
 result items_entities(item_job *j)
 {
-    brush_bodies bodies;
-    result done = brush_bodies_make(j->in, 1u << BRUSH_ENTITY, j->report, j->memory, &bodies);
+    brush_bodies made;
+    result done = brush_bodies_make(j->in, 1u << BRUSH_ENTITY, j->report, j->memory, &made);
     if (done != RESULT_OK) return done;
-    for (uint32_t e = 0; e < j->in->entity_count && done == RESULT_OK; ++e) done = add_entity(j, &bodies, e);
-    brush_bodies_free(&bodies);
+    j->bodies = made;
+    for (uint32_t e = 0; e < j->in->entity_count && done == RESULT_OK; ++e) done = add_entity(j, &j->bodies, e);
     return done;
 }

@@ -1,6 +1,6 @@
 // The mesh's vertices as the scene will have them: rounded to its step about its origin, and which of them become one.
 // SPDX-License-Identifier: MIT
-// Invariant: the same arithmetic as scene_builder_finish, over the same bounds; the checks read the finished scene.
+// Invariant: the same frame as scene_builder_finish, over the same bounds; the checks read the finished scene.
 #include "items.h"
 #include "../core/scene_finish.h"
 
@@ -8,26 +8,6 @@
 #include <string.h>
 #define XXH_INLINE_ALL
 #include <xxhash.h>
-
-enum { STEPS_LOG2 = 24, STEP_LOG2_LEAST = -64 };
-
-typedef struct frame { double origin[3], step; } frame;
-
-static frame frame_of(const scene_builder *b)
-{
-    builder_bounds bounds = builder_bounds_none();
-    builder_bounds_more(b, &bounds);
-    frame f = {.step = 1};
-    double radius = 0;
-    for (int k = 0; k < 3; ++k) {
-        f.origin[k] = finish_origin((bounds.low[k] + bounds.high[k]) / 2);
-        radius = fmax(radius, fmax(bounds.high[k] - f.origin[k], f.origin[k] - bounds.low[k]));
-    }
-    int exponent;
-    if (frexp(radius, &exponent) == 0.5) exponent--;
-    f.step = ldexp(1, exponent - STEPS_LOG2 > STEP_LOG2_LEAST ? exponent - STEPS_LOG2 : STEP_LOG2_LEAST);
-    return f;
-}
 
 static result find_same(rounded_mesh *m)
 {
@@ -48,7 +28,9 @@ static result find_same(rounded_mesh *m)
 result rounded_mesh_make(const item_job *j, rounded_mesh *out)
 {
     const compile_mesh *mesh = j->zones->mesh;
-    const frame f = frame_of(j->builder);
+    builder_bounds bounds = builder_bounds_none();
+    builder_bounds_more(j->builder, &bounds);
+    const finish_frame f = finish_frame_of(bounds.low, bounds.high);
     const double steps = 1 / f.step, limit = 1 << 28; // of vertices that no item has, farther out than all that do
     *out = (rounded_mesh){.memory = j->memory, .vertex_count = mesh->vertex_count};
     out->points = memory_alloc(j->memory, mesh->vertex_count, sizeof *out->points);

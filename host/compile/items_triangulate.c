@@ -3,7 +3,8 @@
 // Invariant: which ears have an area is decided by which vertices share a side, exactly; rounded points only choose among them.
 #include "items.h"
 
-#include <assert.h>
+#include <math.h>
+#include <string.h>
 
 loop_triangulator loop_triangulator_make(const item_job *j, const rounded_mesh *rounded)
 {
@@ -64,11 +65,11 @@ static int are_straight(const loop_corner *a, const loop_corner *b, const loop_c
     return (is_on(a, b->sides[0]) && is_on(c, b->sides[0])) || (is_on(a, b->sides[1]) && is_on(c, b->sides[1]));
 }
 
-// Twice the area over the longest edge, squared, with the sign of the turn. Products and sums are exact: below 2^53.
-static double ear_width(const loop_triangulator *t, const compile_polygon *p, const loop_corner *b)
+// Twice the area over the longest edge, squared, with the sign of the turn at the middle one of three vertices of the mesh.
+// Products and sums are exact: below 2^53.
+static double width_of(const loop_triangulator *t, const compile_polygon *p, const uint32_t corners[3])
 {
-    const loop_corner *all = t->corners.items;
-    const int32_t *o = t->rounded->points[b->vertex], *q = t->rounded->points[all[b->before].vertex], *r = t->rounded->points[all[b->after].vertex];
+    const int32_t *q = t->rounded->points[corners[0]], *o = t->rounded->points[corners[1]], *r = t->rounded->points[corners[2]];
     const cull_wide_plane *plane = plane_table_canonical(t->job->in->planes, p->plane);
     double u[3], v[3], along = 0, cross[3], size = 0, longest = 0, lengths[3] = {0};
     for (int k = 0; k < 3; ++k) {
@@ -91,7 +92,8 @@ static double ear_width(const loop_triangulator *t, const compile_polygon *p, co
 static void measure(loop_triangulator *t, const compile_polygon *p, uint32_t at)
 {
     loop_corner *all = t->corners.items;
-    all[at].width = ear_width(t, p, &all[at]);
+    const uint32_t ear[3] = {all[all[at].before].vertex, all[at].vertex, all[all[at].after].vertex};
+    all[at].width = width_of(t, p, ear);
 }
 
 // An ear with an area that leaves some area, or nothing: not the one corner that the others' line faces.
@@ -144,6 +146,54 @@ static result clip(loop_triangulator *t, const compile_polygon *p, buffer *trian
     return RESULT_OK;
 }
 
+// ---- Triangles that rounding has made flat ----
+
+static double triangle_width(const loop_triangulator *t, const compile_polygon *p, const uint32_t places[3])
+{
+    uint32_t v[3];
+    for (int k = 0; k < 3; ++k) v[k] = t->rounded->same_as[t->mesh->loop[p->first_vertex + places[k]]];
+    return width_of(t, p, v);
+}
+
+static double smaller(double a, double b)
+{
+    return fabs(a) < fabs(b) ? a : b;
+}
+
+typedef struct diagonal_flip { uint32_t *one, *other, made[2][3]; double width; } diagonal_flip; // width: of the thinner; 0: no flip
+
+// The edge from place k of `one`, as the diagonal of two triangles, turned to the other diagonal.
+static void try_flip(const loop_triangulator *t, const compile_polygon *p, uint32_t *one, int k, buffer *triangles, diagonal_flip *best)
+{
+    const uint32_t a = one[k], b = one[(k + 1) % 3], c = one[(k + 2) % 3];
+    uint32_t *all = triangles->items;
+    for (size_t i = 0; i < triangles->count; i += 3)
+        for (int j = 0; j < 3; ++j) {
+            if (all[i + (size_t)j] != b || all[i + (size_t)((j + 1) % 3)] != a) continue;
+            const uint32_t d = all[i + (size_t)((j + 2) % 3)];
+            diagonal_flip flip = {one, all + i, {{a, d, c}, {d, b, c}}, 0};
+            flip.width = fabs(smaller(triangle_width(t, p, flip.made[0]), triangle_width(t, p, flip.made[1])));
+            if (flip.width > best->width) *best = flip;
+        }
+}
+
+// A vertex inside a side leaves the line of the side when it is rounded, and then may lie in that of a diagonal. The count of
+// those turned.
+static uint32_t flip_flat(const loop_triangulator *t, const compile_polygon *p, buffer *triangles)
+{
+    uint32_t *all = triangles->items, count = 0;
+    for (size_t i = 0; i < triangles->count; i += 3) {
+        if (triangle_width(t, p, all + i) != 0) continue;
+        diagonal_flip best = {.width = 0};
+        for (int k = 0; k < 3; ++k) try_flip(t, p, all + i, k, triangles, &best);
+        if (best.width == 0) continue; // what lies beside it is flat too, yet or at all
+        memcpy(best.one, best.made[0], sizeof best.made[0]);
+        memcpy(best.other, best.made[1], sizeof best.made[1]);
+        ++count;
+    }
+    return count;
+}
+
 static result push_true_corners(const loop_triangulator *t, buffer *loop)
 {
     const loop_corner *all = t->corners.items;
@@ -170,5 +220,7 @@ result loop_triangulate(loop_triangulator *t, const compile_polygon *p, buffer *
     }
     for (uint32_t i = 0; i < count; ++i) measure(t, p, i);
     if (push_true_corners(t, loop) != RESULT_OK) return RESULT_NO_MEMORY;
-    return clip(t, p, triangles);
+    if (clip(t, p, triangles) != RESULT_OK) return RESULT_NO_MEMORY;
+    while (flip_flat(t, p, triangles)) continue; // ends: each turn leaves a flat triangle less
+    return RESULT_OK;
 }

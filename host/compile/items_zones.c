@@ -10,7 +10,7 @@
 #include <string.h>
 
 enum {
-    NAME_BYTES = 64,
+    PORTAL_NAME_BYTES = 4352, // of a JSON scene with all prefixes, and a number
     CANDIDATES_MOST = 24, // planes tried at a node
     SAMPLES_MOST = 256,   // fragments that each is tried on
     DEPTH_MOST = 240,     // planes of a hull, less the six around all
@@ -56,6 +56,18 @@ static result add_fragment(partition *p, const compile_polygon *q, uint32_t fron
     return buffer_append(&p->fragments, &f, 1) ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
+// A wall, or a liquid that holds the void back: the void may lie in the zone's hulls, so it counts as the zone on both sides.
+static result take_polygon(partition *p, uint32_t polygon)
+{
+    const compiled_zones *z = p->job->zones;
+    const compile_polygon *q = &z->mesh->polygons[polygon];
+    const uint32_t *seal = z->seal_zones[polygon];
+    if (z->polygon_zone[polygon] == CELL_NONE) return RESULT_OK;
+    if (p->job->in->brushes[q->brush].role != BRUSH_LIQUID) return add_fragment(p, q, z->polygon_zone[polygon], CELL_NONE);
+    if (seal[0] == CELL_NONE && seal[1] == CELL_NONE) return RESULT_OK;
+    return add_fragment(p, q, seal[seal[0] == CELL_NONE], seal[seal[1] != CELL_NONE]);
+}
+
 static result take_fragments(partition *p)
 {
     const compiled_zones *z = p->job->zones;
@@ -65,10 +77,7 @@ static result take_fragments(partition *p)
         const compile_polygon q = {.plane = from->plane, .first_vertex = from->first_vertex, .vertex_count = from->vertex_count};
         done = add_fragment(p, &q, from->zones[0], from->zones[1]);
     }
-    for (uint32_t i = 0; i < z->mesh->polygon_count && done == RESULT_OK; ++i) {
-        const compile_polygon *q = &z->mesh->polygons[i];
-        if (z->polygon_zone[i] != CELL_NONE && p->job->in->brushes[q->brush].role != BRUSH_LIQUID) done = add_fragment(p, q, z->polygon_zone[i], CELL_NONE);
-    }
+    for (uint32_t i = 0; i < z->mesh->polygon_count && done == RESULT_OK; ++i) done = take_polygon(p, i);
     return done;
 }
 
@@ -261,31 +270,74 @@ static result add_zone(partition *p, uint32_t zone, const scene_solid_plane arou
     return done;
 }
 
-static result add_portal(partition *p, uint32_t portal)
+typedef struct named_portal { const char *kind; uint32_t number; const compiled_portal *portal; } named_portal;
+
+// A portal brush may have a name; where walls part it, its further pieces get their numbers behind it.
+static void name_portal(const item_job *j, const named_portal *of, char name[PORTAL_NAME_BYTES])
 {
-    const item_job *j = p->job;
-    const compiled_portal *from = &j->zones->portals[portal];
-    const compile_mesh *m = j->zones->mesh;
-    const compile_polygon q = {.plane = from->plane, .first_vertex = from->first_vertex, .vertex_count = from->vertex_count};
-    buffer points = buffer_make(j->memory, 3 * sizeof(double));
-    result done = RESULT_OK;
-    for (uint32_t i = 0; i < q.vertex_count && done == RESULT_OK; ++i) {
-        if (item_goes_straight(j, &q, i)) continue;
-        double *to = buffer_push(&points, 1);
-        if (!to) done = RESULT_NO_MEMORY;
-        for (int k = 0; k < 3 && to; ++k) to[k] = m->vertices[m->loop[q.first_vertex + i]].position[k] / j->in->steps_per_metre;
-    }
-    char name[NAME_BYTES];
+    const compiled_portal *portals = j->zones->portals;
+    const compile_entity *e = &j->in->entities[of->portal->entity];
+    const int is_named = e->name && strcmp(e->class_name, "zone_portal") == 0; // then the number is the portal's
+    const int is_first = is_named && (of->number == 0 || portals[of->number - 1].entity != of->portal->entity);
+    if (!is_named) snprintf(name, PORTAL_NAME_BYTES, "%s %u", of->kind, of->number);
+    else if (is_first) snprintf(name, PORTAL_NAME_BYTES, "%s", e->name);
+    else snprintf(name, PORTAL_NAME_BYTES, "%.4200s %u", e->name, of->number);
+}
+
+static result add_piece(const item_job *j, const named_portal *of, const portal_pieces *from, uint32_t number)
+{
+    const compiled_portal *portal = of->portal;
+    const portal_piece_of_door *piece = (const portal_piece_of_door *)from->pieces.items + number;
+    const polygon_edge *edges = (const polygon_edge *)from->edges.items + piece->shape.first;
+    double(*points)[3] = memory_alloc(j->memory, piece->shape.count, sizeof *points);
+    if (!points) return RESULT_NO_MEMORY;
+    for (uint32_t i = 0; i < piece->shape.count; ++i)
+        for (int k = 0; k < 3; ++k) points[i][k] = edges[i].start[k] / j->in->steps_per_metre;
+    char name[PORTAL_NAME_BYTES];
     double plane[4];
-    item_plane(j, from->plane, plane);
-    snprintf(name, sizeof name, "portal %u", portal);
-    const builder_portal made = {.name = name, .points = (const double(*)[3])points.items, .point_count = (uint32_t)points.count,
-                                 .zones = {from->zones[0], from->zones[1]}, .door = j->door_of[from->entity], .normal = plane};
+    item_plane(j, portal->plane, plane);
+    name_portal(j, of, name);
+    if (from->pieces.count > 1) {
+        const size_t length = strlen(name);
+        snprintf(name + length, sizeof name - length, " leaf %u", number);
+    }
+    const builder_portal made = {.name = name, .points = (const double(*)[3])points, .point_count = piece->shape.count,
+                                 .zones = {portal->zones[0], portal->zones[1]}, .door = piece->door, .normal = plane};
     const char *fault = NULL;
-    uint32_t number;
-    if (done == RESULT_OK) done = scene_builder_portal(j->builder, &made, &number, &fault);
-    if (done == RESULT_BAD_INPUT) done = tell_fault(j, "portal", portal, fault);
-    buffer_free(&points);
+    uint32_t added;
+    result done = scene_builder_portal(j->builder, &made, &added, &fault);
+    if (done == RESULT_BAD_INPUT) done = tell_fault(j, of->kind, of->number, fault);
+    memory_free(j->memory, points, piece->shape.count, sizeof *points);
+    return done;
+}
+
+static result add_portal(const item_job *j, const named_portal *of, portal_pieces *pieces)
+{
+    result done = portal_pieces_make(j, of->portal, pieces);
+    for (uint32_t k = 0; k < pieces->pieces.count && done == RESULT_OK; ++k) done = add_piece(j, of, pieces, k);
+    return done;
+}
+
+// A liquid that seals, and parts two zones elsewhere: seen through, so a portal there.
+static result add_seal(const item_job *j, uint32_t polygon, portal_pieces *pieces)
+{
+    const compile_polygon *p = &j->zones->mesh->polygons[polygon];
+    const uint32_t *zones = j->zones->seal_zones[polygon];
+    if (zones[0] == CELL_NONE || zones[1] == CELL_NONE || zones[0] == zones[1]) return RESULT_OK;
+    const compiled_portal made = {.plane = p->plane, .first_vertex = p->first_vertex, .vertex_count = p->vertex_count,
+                                  .zones = {zones[0], zones[1]}, .entity = j->in->brushes[p->brush].entity};
+    return add_portal(j, &(named_portal){"liquid", polygon, &made}, pieces);
+}
+
+static result add_portals(const item_job *j)
+{
+    portal_pieces pieces = {buffer_make(j->memory, sizeof(portal_piece_of_door)), buffer_make(j->memory, sizeof(polygon_edge))};
+    result done = RESULT_OK;
+    for (uint32_t i = 0; i < j->zones->portal_count && done == RESULT_OK; ++i)
+        done = add_portal(j, &(named_portal){"portal", i, &j->zones->portals[i]}, &pieces);
+    for (uint32_t i = 0; i < j->zones->mesh->polygon_count && done == RESULT_OK; ++i) done = add_seal(j, i, &pieces);
+    buffer_free(&pieces.pieces);
+    buffer_free(&pieces.edges);
     return done;
 }
 
@@ -304,8 +356,7 @@ static result add_all(partition *p)
     around_all(p->job, around);
     result done = RESULT_OK;
     for (uint32_t z = 0; z < p->job->zones->zone_count && done == RESULT_OK; ++z) done = add_zone(p, z, around);
-    for (uint32_t i = 0; i < p->job->zones->portal_count && done == RESULT_OK; ++i) done = add_portal(p, i);
-    return done;
+    return done == RESULT_OK ? add_portals(p->job) : done;
 }
 
 result items_zones(item_job *j)
@@ -320,7 +371,8 @@ result items_zones(item_job *j)
                    .signs = buffer_make(j->memory, sizeof(int8_t)),
                    .tally = buffer_make(j->memory, sizeof(uint32_t))};
     result done = take_fragments(&p);
-    const int has_room = buffer_push(&p.signs, j->zones->mesh->loop_count + 64) && buffer_push(&p.tally, 2 * (size_t)j->zones->zone_count);
+    const int never_null = buffer_push(&p.fragments, 0) && buffer_push(&p.edges, 0) && buffer_push(&p.planes, 0);
+    const int has_room = never_null && buffer_push(&p.signs, j->zones->mesh->loop_count + 64) && buffer_push(&p.tally, 2 * (size_t)j->zones->zone_count);
     const node root = {0, p.fragments.count, 0};
     if (!has_room) done = RESULT_NO_MEMORY;
     if (done == RESULT_OK) done = split_node(&p, &root);

@@ -2,8 +2,7 @@
 // edge. They belong to the line like the others, or a T-junction would be left.
 // SPDX-License-Identifier: MIT
 #include "lines.h"
-
-#include "../core/box_tree.h"
+#include "surface_frame.h"
 
 #include <math.h>
 
@@ -19,17 +18,32 @@ static const surface_corner *edge_ends(const surface *s, const line_edge *e, uin
     return c + at;
 }
 
-static void make_boxes(const line_set *l, tree_box *boxes)
+static int is_in_box(const double p[3], const double min[3], const double max[3])
 {
-    for (size_t i = 0; i < l->edges.count; ++i) {
-        uint32_t ends[2];
-        edge_ends(l->s, (line_edge *)l->edges.items + i, ends);
-        const double *a = surface_vertex_at(l->s, ends[0])->position, *b = surface_vertex_at(l->s, ends[1])->position;
-        for (int k = 0; k < 3; ++k) {
-            boxes[i].min[k] = (a[k] < b[k] ? a[k] : b[k]) - NEAR_STEPS;
-            boxes[i].max[k] = (a[k] < b[k] ? b[k] : a[k]) + NEAR_STEPS;
-        }
+    for (int k = 0; k < 3; ++k)
+        if (p[k] < min[k] - NEAR_STEPS || p[k] > max[k] + NEAR_STEPS) return 0;
+    return 1;
+}
+
+static int is_near_edge(const line_set *l, const line_edge *e, uint32_t vertex)
+{
+    uint32_t ends[2];
+    edge_ends(l->s, e, ends);
+    const double *a = surface_vertex_at(l->s, ends[0])->position, *b = surface_vertex_at(l->s, ends[1])->position;
+    double min[3], max[3];
+    for (int k = 0; k < 3; ++k) {
+        min[k] = a[k] < b[k] ? a[k] : b[k];
+        max[k] = a[k] < b[k] ? b[k] : a[k];
     }
+    return is_in_box(surface_vertex_at(l->s, vertex)->position, min, max);
+}
+
+// A slanted polygon's box holds much that is nowhere near it.
+static int is_near_plane(const surface *s, plane_ref plane, uint32_t vertex)
+{
+    const cull_row *row = plane_table_row(s->planes, plane);
+    const double *p = surface_vertex_at(s, vertex)->position;
+    return fabs(row->n[0] * p[0] + row->n[1] * p[1] + row->n[2] * p[2] + row->offset) <= 4 * NEAR_STEPS * row->most;
 }
 
 static int is_near_line(const line_set *l, const line_edge *e, uint32_t end, uint32_t vertex)
@@ -79,46 +93,78 @@ static void lines_by_vertex(const line_set *l, uint32_t *first, uint32_t *lines_
     }
 }
 
-static result search(const line_set *l, const box_tree *tree, const uint32_t *first, const uint32_t *lines_at, buffer *out)
+static result add_touch(buffer *out, size_t of_vertex, line_touch found) // of_vertex: where this vertex' touches begin
 {
-    for (uint32_t v = 0; v < l->s->vertices.count; ++v) {
-        if (first[v] == first[v + 1]) continue; // of no polygon in use
-        const double *p = surface_vertex_at(l->s, v)->position;
-        const tree_box at = {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}};
-        box_walk walk;
-        box_walk_start(&walk, tree, &at);
-        for (uint32_t i; box_walk_next(&walk, &i);) {
-            const line_edge *e = (line_edge *)l->edges.items + i;
-            if (has_own_edge(e->line, first, lines_at, v) || !touches(l, e, v)) continue;
-            const line_touch found = {e->line, v};
-            const line_touch *last = out->count ? (line_touch *)out->items + out->count - 1 : NULL;
-            if (last && last->line == found.line && last->vertex == found.vertex) continue;
-            if (!buffer_append(out, &found, 1)) return RESULT_NO_MEMORY;
-        }
+    const line_touch *known = out->items;
+    for (size_t i = of_vertex; i < out->count; ++i)
+        if (known[i].line == found.line) return RESULT_OK;
+    return buffer_append(out, &found, 1) ? RESULT_OK : RESULT_NO_MEMORY;
+}
+
+typedef struct touch_search {
+    const line_set *l;
+    surface_frame frame;
+    tree_box *boxes; // of polygons: a quarter as many as edges
+    box_tree tree;
+    uint32_t *first, *lines_at; // see lines_by_vertex
+    buffer *out;
+} touch_search;
+
+static result search_polygon(const touch_search *t, uint32_t polygon, uint32_t vertex, size_t of_vertex)
+{
+    const line_set *l = t->l;
+    const surface_polygon *p = surface_polygon_at(l->s, polygon);
+    if (!is_near_plane(l->s, p->plane, vertex)) return RESULT_OK;
+    for (uint32_t c = 0; c < p->count; ++c) {
+        const line_edge *e = (line_edge *)l->edges.items + l->edge_of[p->first + c];
+        if (!is_near_edge(l, e, vertex) || has_own_edge(e->line, t->first, t->lines_at, vertex) || !touches(l, e, vertex)) continue;
+        const result r = add_touch(t->out, of_vertex, (line_touch){e->line, vertex});
+        if (r != RESULT_OK) return r;
     }
     return RESULT_OK;
+}
+
+static result search(const touch_search *t)
+{
+    result r = RESULT_OK;
+    for (uint32_t v = 0; v < t->l->s->vertices.count; ++v) {
+        if (t->first[v] == t->first[v + 1]) continue; // of no polygon in use
+        const tree_box at = surface_frame_vertex(&t->frame, t->l->s, v, 0);
+        const size_t of_vertex = t->out->count;
+        box_walk walk;
+        box_walk_start(&walk, &t->tree, &at);
+        for (uint32_t i; r == RESULT_OK && box_walk_next(&walk, &i);) r = search_polygon(t, i, v, of_vertex);
+        if (r != RESULT_OK) return r;
+    }
+    return r;
+}
+
+static void make_boxes(const surface_frame *f, const surface *s, tree_box *boxes)
+{
+    for (uint32_t i = 0; i < surface_polygon_count(s); ++i) boxes[i] = surface_frame_polygon(f, s, i, NEAR_STEPS);
 }
 
 result line_touches(const line_set *l, buffer *out)
 {
     const size_t edges = l->edges.count, vertices = l->s->vertices.count;
+    const uint32_t polygons = surface_polygon_count(l->s);
     if (edges == 0) return RESULT_OK;
-    tree_box *boxes = memory_alloc(l->memory, edges, sizeof(*boxes));
-    uint32_t *first = memory_alloc_zeroed(l->memory, vertices + 2, sizeof(*first));
-    uint32_t *lines_at = memory_alloc(l->memory, 2 * edges, sizeof(*lines_at));
-    box_tree tree;
-    result r = boxes && first && lines_at ? RESULT_OK : RESULT_NO_MEMORY;
+    touch_search t = {.l = l, .frame = surface_frame_of(l->s), .out = out};
+    t.boxes = memory_alloc(l->memory, polygons, sizeof(*t.boxes));
+    t.first = memory_alloc_zeroed(l->memory, vertices + 2, sizeof(*t.first));
+    t.lines_at = memory_alloc(l->memory, 2 * edges, sizeof(*t.lines_at));
+    result r = t.boxes && t.first && t.lines_at ? RESULT_OK : RESULT_NO_MEMORY;
     if (r == RESULT_OK) {
-        make_boxes(l, boxes);
-        lines_by_vertex(l, first, lines_at);
-        r = box_tree_open(boxes, (uint32_t)edges, l->memory, &tree);
+        make_boxes(&t.frame, l->s, t.boxes);
+        lines_by_vertex(l, t.first, t.lines_at);
+        r = box_tree_open(t.boxes, polygons, l->memory, &t.tree);
         if (r == RESULT_OK) {
-            r = search(l, &tree, first, lines_at, out);
-            box_tree_close(&tree, l->memory);
+            r = search(&t);
+            box_tree_close(&t.tree, l->memory);
         }
     }
-    memory_free(l->memory, boxes, edges, sizeof(*boxes));
-    memory_free(l->memory, first, vertices + 2, sizeof(*first));
-    memory_free(l->memory, lines_at, 2 * edges, sizeof(*lines_at));
+    memory_free(l->memory, t.boxes, polygons, sizeof(*t.boxes));
+    memory_free(l->memory, t.first, vertices + 2, sizeof(*t.first));
+    memory_free(l->memory, t.lines_at, 2 * edges, sizeof(*t.lines_at));
     return r;
 }

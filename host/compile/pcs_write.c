@@ -181,6 +181,7 @@ static void put_arrays(writing *w)
     put(w, PCS_POSITIONS, s->positions, s->position_count);
     put(w, PCS_NORMALS, s->normals, s->position_count);
     put(w, PCS_TEXCOORDS, s->texcoords, 2 * (uint64_t)s->position_count);
+    put(w, PCS_TANGENTS, s->tangents, s->tangent_count);
     put(w, PCS_VERTEX_MATERIALS, s->vertex_materials, s->position_count);
     put(w, PCS_INDICES, s->indices, s->index_count);
     put(w, PCS_POLYGON_FIRST_TRIANGLE, s->polygon_first_triangle, (uint64_t)s->polygon_count + 1);

@@ -84,7 +84,10 @@ plane_ref plane_table_add(plane_table *t, const cull_wide_plane *plane)
 
 static int normals_sign(const plane_table *t, plane_ref a, plane_ref b, plane_ref c) // of the canonical planes
 {
-    return cull_normals_sign(plane_table_canonical(t, a), plane_table_canonical(t, b), plane_table_canonical(t, c));
+    const cull_wide_plane *const planes[3] = {plane_table_canonical(t, a), plane_table_canonical(t, b), plane_table_canonical(t, c)};
+    const cull_row *const rows[3] = {plane_table_row(t, a), plane_table_row(t, b), plane_table_row(t, c)};
+    cull_tier tier;
+    return cull_normals_sign_of_rows(planes, rows, &tier);
 }
 
 int plane_table_normals_sign(const plane_table *t, plane_ref a, plane_ref b, plane_ref c)
@@ -116,7 +119,9 @@ int plane_table_order_along(const plane_table *t, plane_ref a, plane_ref b, plan
 
 int plane_table_position(const plane_table *t, const plane_ref meet[3], double out[3])
 {
-    return cull_meet_position(plane_table_canonical(t, meet[0]), plane_table_canonical(t, meet[1]), plane_table_canonical(t, meet[2]), out);
+    const cull_wide_plane *const planes[3] = {plane_table_canonical(t, meet[0]), plane_table_canonical(t, meet[1]), plane_table_canonical(t, meet[2])};
+    const cull_row *const rows[3] = {plane_table_row(t, meet[0]), plane_table_row(t, meet[1]), plane_table_row(t, meet[2])};
+    return cull_meet_position_of_rows(planes, rows, out);
 }
 
 int plane_table_side_at(const plane_table *t, const plane_ref meet[3], const double position[3], plane_ref of)

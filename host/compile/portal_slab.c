@@ -1,5 +1,5 @@
-// Door groups and portal brushes as slabs: the thinnest way through their faces' normals, in the middle of which the
-// portal lies, and the sides that bound it. The same for a turned door as for an upright one.
+// Door groups and portal brushes as slabs: the thinnest way through along their faces' normals, in the middle of which the
+// portal lies, and the sides that bound it. The same for a turned door as for an upright one; each of several ways as thin.
 // SPDX-License-Identifier: MIT
 #include "brush_shape.h"
 #include "portals.h"
@@ -10,6 +10,7 @@
 
 enum { WAYS_MOST = 32 };
 #define DOOR_MARGIN_UNITS 1.0 // past the frame: a door that just fills its opening ends inside the wall
+#define AXIS_MARGIN_UNITS 2.0 // along axes that no face has: over sqrt(3), so that they cut no corner off a turned box
 #define UNITS_A_METRE 32.0
 #define SAME_THICKNESS 1e-6   // steps: no choice by rounding between two equal axes
 
@@ -17,6 +18,7 @@ typedef struct way { // a direction through the group, and how far it reaches th
     int64_t normal[3];
     double length, low_at, high_at;
     int64_t low, high;
+    uint32_t is_face; // of some brush; else only an axis of the scene
 } way;
 
 typedef struct slab_group {
@@ -59,6 +61,12 @@ static void add_axes(slab_group *g)
     }
 }
 
+static void add_face_way(slab_group *g, const int64_t normal[3])
+{
+    way *w = find_way(g, normal);
+    if (w) w->is_face = 1;
+}
+
 static void reach(way *w, const double p[3])
 {
     const double at = (double)w->normal[0] * p[0] + (double)w->normal[1] * p[1] + (double)w->normal[2] * p[2];
@@ -90,14 +98,12 @@ static double thickness(const way *w)
     return (double)(w->high - w->low) / w->length;
 }
 
-static void choose_thin(slab_group *g)
+static int is_thinnest(const slab_group *g, uint32_t which)
 {
-    g->thin = 0;
-    for (uint32_t i = 1; i < g->way_count; ++i) {
-        const double now = thickness(&g->ways[i]), best = thickness(&g->ways[g->thin]);
-        const int level = g->ways[i].normal[1] == 0 && g->ways[g->thin].normal[1] != 0; // a wall rather than a floor
-        if (now < best - SAME_THICKNESS || (now < best + SAME_THICKNESS && level)) g->thin = i;
-    }
+    if (!g->ways[which].is_face) return 0;
+    for (uint32_t i = 0; i < g->way_count; ++i)
+        if (g->ways[i].is_face && thickness(&g->ways[i]) < thickness(&g->ways[which]) - SAME_THICKNESS) return 0;
+    return 1;
 }
 
 // ---- Groups ----
@@ -123,7 +129,7 @@ static result reach_brushes(slab_build *b, slab_group *g, uint32_t first, uint32
             if (fault != SHAPE_SOUND) continue;
             const shape_face *faces = b->shape.faces.items;
             for (size_t f = 0; f < b->shape.faces.count && pass == 0; ++f)
-                find_way(g, plane_table_canonical(b->in->planes, ((plane_ref *)b->planes.items)[faces[f].face])->normal);
+                add_face_way(g, plane_table_canonical(b->in->planes, ((plane_ref *)b->planes.items)[faces[f].face])->normal);
             const shape_corner *corners = b->shape.corners.items;
             for (size_t c = 0; c < b->shape.corners.count && pass == 1; ++c)
                 for (uint32_t w = 0; w < g->way_count; ++w) reach(&g->ways[w], corners[c].position);
@@ -136,8 +142,9 @@ static result add_group(slab_build *b, uint32_t entity, uint32_t is_door, uint32
     slab_group g = {.entity = entity, .is_door = is_door};
     const result r = reach_brushes(b, &g, first, count);
     if (r != RESULT_OK || !round_ways(&g)) return r; // out of range or nothing: no portal
-    choose_thin(&g);
-    return buffer_append(&b->groups, &g, 1) ? RESULT_OK : RESULT_NO_MEMORY;
+    for (g.thin = 0; g.thin < g.way_count; ++g.thin) // several ways as thin: which of them parts anything, the zones will tell
+        if (is_thinnest(&g, g.thin) && !buffer_append(&b->groups, &g, 1)) return RESULT_NO_MEMORY;
+    return RESULT_OK;
 }
 
 static int makes_something(const compile_input *in, const compile_entity *e)
@@ -171,8 +178,11 @@ static int touch(const slab_group *a, const slab_group *b)
     const way *thin = &a->ways[a->thin], *other = &b->ways[b->thin];
     if (!a->is_door || !b->is_door || memcmp(thin->normal, other->normal, sizeof(thin->normal)) != 0) return 0;
     if (thin->low >= other->high || other->low >= thin->high) return 0;
-    for (int k = 0; k < 3; ++k)
-        if (a->ways[k].low > b->ways[k].high || b->ways[k].low > a->ways[k].high) return 0;
+    for (uint32_t i = 0; i < a->way_count; ++i) // the axes are the first of both
+        for (uint32_t k = 0; k < b->way_count; ++k)
+            if (memcmp(a->ways[i].normal, b->ways[k].normal, sizeof(thin->normal)) == 0 &&
+                (a->ways[i].low > b->ways[k].high || b->ways[k].low > a->ways[i].high))
+                return 0;
     return 1;
 }
 
@@ -189,6 +199,7 @@ static void join(slab_group *into, const slab_group *from)
         }
         if (same->low < into->ways[i].low) into->ways[i].low = same->low;
         if (same->high > into->ways[i].high) into->ways[i].high = same->high;
+        into->ways[i].is_face &= same->is_face;
         ++i;
     }
     const way *again = find_way(into, thin.normal);
@@ -221,7 +232,8 @@ static plane_ref side_plane(slab_build *b, const int64_t normal[3], int sign, in
 
 static int64_t margin_of(const slab_build *b, const slab_group *g, const way *w)
 {
-    return g->is_door ? (int64_t)ceil(DOOR_MARGIN_UNITS * b->unit * w->length) : 0;
+    if (!g->is_door) return 0;
+    return (int64_t)ceil((w->is_face ? DOOR_MARGIN_UNITS : AXIS_MARGIN_UNITS) * b->unit * w->length);
 }
 
 static result add_sides(slab_build *b, const slab_group *g, const way *w)

@@ -93,8 +93,9 @@ static result make_room(emitter *e)
     m->vertex_count = vertices;
     m->loop_count = m->polygon_count = 0;
     e->z->polygon_zone = arena_push(&e->z->memory, polygons, sizeof(uint32_t));
+    e->z->seal_zones = arena_push(&e->z->memory, polygons, sizeof(*e->z->seal_zones));
     e->z->portals = arena_push(&e->z->memory, portals, sizeof(compiled_portal));
-    return m->vertices && m->loop && m->edge_planes && m->polygons && e->z->polygon_zone && e->z->portals ? RESULT_OK : RESULT_NO_MEMORY;
+    return m->vertices && m->loop && m->edge_planes && m->polygons && e->z->polygon_zone && e->z->seal_zones && e->z->portals ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
 static result write_polygon(emitter *e, uint32_t number)
@@ -106,6 +107,8 @@ static result write_polygon(emitter *e, uint32_t number)
         const result r = region_of_face(&e->t->regions, e->rays, 2 * number, &region);
         if (r != RESULT_OK) return r;
     }
+    for (uint32_t side = 0; side < 2; ++side)
+        e->z->seal_zones[m->polygon_count][side] = p->kind == SURFACE_SEAL ? zone_of_region(e, zone_trace_region(e->t, 2 * number + side)) : ZONE_NONE;
     if (p->kind == SURFACE_SEAL && region == REGION_VOID) region = zone_trace_region(e->t, 2 * number + 1);
     e->z->polygon_zone[m->polygon_count] = zone_of_region(e, region);
     const uint32_t first = m->loop_count;

@@ -2,8 +2,7 @@
 // along the edge, so that each part has its own air. Touching along an edge seals, however thin.
 // SPDX-License-Identifier: MIT
 #include "portals.h"
-
-#include "../core/box_tree.h"
+#include "surface_frame.h"
 
 #define NEAR_STEPS 1e-5 // positions are off by 2^-26 steps
 
@@ -11,8 +10,10 @@ typedef struct touch { uint32_t polygon, ends[2]; plane_ref plane; } touch; // t
 
 typedef struct toucher {
     surface *s;
-    tree_box *boxes;
+    surface_frame frame;
+    tree_box *boxes; // in it
     box_tree tree;
+    buffer near;    // uint32_t: polygons whose boxes touch that of the one at work
     buffer touches; // touch
     buffer next;    // uint32_t: polygon + 1 that was cut off this one
 } toucher;
@@ -30,29 +31,49 @@ static int is_inside(const surface *s, const surface_polygon *p, const uint32_t 
     return 1;
 }
 
+static int boxes_touch(const tree_box *a, const tree_box *b)
+{
+    for (int k = 0; k < 3; ++k)
+        if (a->min[k] > b->max[k] || b->min[k] > a->max[k]) return 0;
+    return 1;
+}
+
+// One walk for all edges of a polygon: walks are most of what this costs.
+static result find_near(toucher *t, uint32_t polygon)
+{
+    const surface *s = t->s;
+    const surface_polygon *p = surface_polygon_at(s, polygon);
+    tree_box box;
+    for (int k = 0; k < 3; ++k) {
+        box.min[k] = t->boxes[polygon].min[k] - NEAR_STEPS;
+        box.max[k] = t->boxes[polygon].max[k] + NEAR_STEPS;
+    }
+    t->near.count = 0;
+    box_walk walk;
+    box_walk_start(&walk, &t->tree, &box);
+    for (uint32_t q; box_walk_next(&walk, &q);) {
+        const surface_polygon *other = surface_polygon_at(s, q);
+        if (q == polygon || other->kind == SURFACE_LIQUID || other->plane >> 1 == p->plane >> 1) continue;
+        if (!buffer_append(&t->near, &q, 1)) return RESULT_NO_MEMORY;
+    }
+    return RESULT_OK;
+}
+
 static result find_touches(toucher *t, uint32_t polygon)
 {
     const surface *s = t->s;
     const surface_polygon *p = surface_polygon_at(s, polygon);
-    for (uint32_t i = 0; i < p->count; ++i) {
-        const touch found = {0, {surface_corners(s, p)[i].vertex, surface_corners(s, p)[i + 1 < p->count ? i + 1 : 0].vertex}, p->plane};
-        const double *a = surface_vertex_at(s, found.ends[0])->position, *b = surface_vertex_at(s, found.ends[1])->position;
-        tree_box box;
-        for (int k = 0; k < 3; ++k) {
-            box.min[k] = (a[k] < b[k] ? a[k] : b[k]) - NEAR_STEPS;
-            box.max[k] = (a[k] < b[k] ? b[k] : a[k]) + NEAR_STEPS;
-        }
-        box_walk walk;
-        box_walk_start(&walk, &t->tree, &box);
-        for (uint32_t q; box_walk_next(&walk, &q);) {
-            const surface_polygon *other = surface_polygon_at(s, q);
-            if (q == polygon || other->kind == SURFACE_LIQUID || other->plane >> 1 == p->plane >> 1 || !is_inside(s, other, found.ends)) continue;
-            touch *kept = buffer_append(&t->touches, &found, 1);
-            if (!kept) return RESULT_NO_MEMORY;
-            kept->polygon = q;
+    const result r = find_near(t, polygon);
+    for (uint32_t i = 0; i < p->count && r == RESULT_OK; ++i) {
+        touch found = {0, {surface_corners(s, p)[i].vertex, surface_corners(s, p)[i + 1 < p->count ? i + 1 : 0].vertex}, p->plane};
+        const tree_box box = surface_frame_edge(&t->frame, s, found.ends, NEAR_STEPS);
+        for (size_t n = 0; n < t->near.count; ++n) {
+            found.polygon = ((uint32_t *)t->near.items)[n];
+            if (!boxes_touch(&t->boxes[found.polygon], &box) || !is_inside(s, surface_polygon_at(s, found.polygon), found.ends)) continue;
+            if (!buffer_append(&t->touches, &found, 1)) return RESULT_NO_MEMORY;
         }
     }
-    return RESULT_OK;
+    return r;
 }
 
 static result cut_touched(toucher *t, const touch *h)
@@ -88,19 +109,20 @@ result touch_cut(surface *s)
 {
     const uint32_t count = surface_polygon_count(s);
     if (count == 0) return RESULT_OK;
-    toucher t = {.s = s, .touches = buffer_make(s->memory, sizeof(touch)), .next = buffer_make(s->memory, sizeof(uint32_t))};
+    toucher t = {.s = s,
+                 .frame = surface_frame_of(s),
+                 .near = buffer_make(s->memory, sizeof(uint32_t)),
+                 .touches = buffer_make(s->memory, sizeof(touch)),
+                 .next = buffer_make(s->memory, sizeof(uint32_t))};
     t.boxes = memory_alloc(s->memory, count, sizeof(*t.boxes));
-    for (uint32_t i = 0; i < count && t.boxes; ++i)
-        for (int k = 0; k < 3; ++k) {
-            t.boxes[i].min[k] = surface_polygon_at(s, i)->min[k];
-            t.boxes[i].max[k] = surface_polygon_at(s, i)->max[k];
-        }
+    for (uint32_t i = 0; i < count && t.boxes; ++i) t.boxes[i] = surface_frame_polygon(&t.frame, s, i, 0);
     result r = t.boxes ? box_tree_open(t.boxes, count, s->memory, &t.tree) : RESULT_NO_MEMORY;
     if (r == RESULT_OK) {
         r = find_and_cut(&t, count);
         box_tree_close(&t.tree, s->memory);
     }
     memory_free(s->memory, t.boxes, count, sizeof(*t.boxes));
+    buffer_free(&t.near);
     buffer_free(&t.touches);
     buffer_free(&t.next);
     return r;

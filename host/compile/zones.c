@@ -1,11 +1,13 @@
 // Zones of the mesh: portals tried, those that separate nothing left out, regions of air made zones, or one open zone of
 // a map that leaks.
 // SPDX-License-Identifier: MIT
+#include "stages.h"
 #include "zone_trace.h"
 
 #include <assert.h>
+#include <math.h>
 
-enum { LIFT_PERCENT = 25 }; // a door that moves up and down and takes more of a room's floor is a lift
+#define UNITS_A_METRE 32.0
 
 typedef struct zone_build {
     const compile_input *in;
@@ -19,38 +21,11 @@ typedef struct zone_build {
 
 // ---- Portals that are none ----
 
-typedef struct floor_box { double min[2], max[2]; } floor_box; // x, z
-
-static void floor_of(const zone_trace *t, uint32_t region, floor_box *out)
-{
-    *out = (floor_box){{1e300, 1e300}, {-1e300, -1e300}};
-    for (uint32_t f = 0; f < t->shells.face_count; ++f) {
-        if (t->shells.shell_of[f] == SHELL_NONE || zone_trace_region(t, f) != region) continue;
-        const surface_polygon *p = surface_polygon_at(&t->s, f >> 1);
-        for (int k = 0; k < 2; ++k) {
-            if (p->min[2 * k] < out->min[k]) out->min[k] = p->min[2 * k];
-            if (p->max[2 * k] > out->max[k]) out->max[k] = p->max[2 * k];
-        }
-    }
-}
-
-static int is_lift(const zone_trace *t, const surface_polygon *p, uint32_t region)
-{
-    const cull_wide_plane *plane = plane_table_canonical(t->s.planes, p->plane);
-    if (cull_magnitude(plane->normal[1]) <= cull_magnitude(plane->normal[0]) || cull_magnitude(plane->normal[1]) <= cull_magnitude(plane->normal[2])) return 0;
-    floor_box room;
-    floor_of(t, region, &room);
-    const double own = (p->max[0] - p->min[0]) * (p->max[2] - p->min[2]), all = (room.max[0] - room.min[0]) * (room.max[1] - room.min[1]);
-    return 100 * own > LIFT_PERCENT * all;
-}
-
-// 1 when the polygon parts two regions of air, and so that it is worth it.
-static int separates(const zone_trace *t, const portal_piece *piece, uint32_t polygon)
+// A lift counts like any door: what is up can't be asked here, for a map that lies on its side has to have the same zones.
+static int separates(const zone_trace *t, uint32_t polygon)
 {
     const uint32_t front = zone_trace_region(t, 2 * polygon), back = zone_trace_region(t, 2 * polygon + 1);
-    if (front == back || front == REGION_VOID || back == REGION_VOID) return 0;
-    const surface_polygon *p = surface_polygon_at(&t->s, polygon);
-    return !piece->is_door || (!is_lift(t, p, front) && !is_lift(t, p, back));
+    return front != back && front != REGION_VOID && back != REGION_VOID;
 }
 
 // A piece stays when any part of it separates; the count of those that don't.
@@ -62,7 +37,7 @@ static uint32_t reject_portals(zone_build *b)
         if (pieces[i].is_rejected == 0) pieces[i].is_rejected = 2; // until shown otherwise
     for (uint32_t i = 0; i < surface_polygon_count(&b->trace.s); ++i) {
         const surface_polygon *p = surface_polygon_at(&b->trace.s, i);
-        if (p->kind == SURFACE_PORTAL && pieces[p->source].is_rejected == 2 && separates(&b->trace, &pieces[p->source], i))
+        if (p->kind == SURFACE_PORTAL && pieces[p->source].is_rejected == 2 && separates(&b->trace, i))
             pieces[p->source].is_rejected = 0;
     }
     for (size_t i = 0; i < b->portals.pieces.count; ++i) {
@@ -126,6 +101,31 @@ static result find_seals(zone_build *b, const compile_mesh *mesh, uint32_t *coun
     return r;
 }
 
+static int mesh_polygon_meets(const compile_mesh *mesh, const compile_polygon *a, const surface_polygon *b)
+{
+    for (int k = 0; k < 3; ++k) {
+        double low = HUGE_VAL, high = -HUGE_VAL;
+        for (uint32_t i = 0; i < a->vertex_count; ++i) {
+            const double at = mesh->vertices[mesh->loop[a->first_vertex + i]].position[k];
+            low = at < low ? at : low;
+            high = at > high ? at : high;
+        }
+        if (low > b->max[k] || high < b->min[k]) return 0;
+    }
+    return 1;
+}
+
+// A portal in the plane of a seal that it may touch would be a second surface in the same place: the seal alone parts there.
+static void reject_on_seals(zone_build *b, const compile_mesh *mesh)
+{
+    portal_piece *pieces = b->portals.pieces.items;
+    for (size_t i = 0; i < b->portals.pieces.count; ++i) {
+        const surface_polygon *p = surface_polygon_at(&b->portals.s, pieces[i].polygon);
+        for (uint32_t m = 0; m < mesh->polygon_count && !pieces[i].is_rejected; ++m)
+            if (b->seals[m] && mesh->polygons[m].plane >> 1 == p->plane >> 1) pieces[i].is_rejected = (uint32_t)mesh_polygon_meets(mesh, &mesh->polygons[m], p);
+    }
+}
+
 // A liquid that stands against the void holds it back, as the maps' own compilers have it; only where the map would leak.
 static result settle_sealed(zone_build *b, const compile_mesh *mesh)
 {
@@ -136,6 +136,7 @@ static result settle_sealed(zone_build *b, const compile_mesh *mesh)
     r = find_seals(b, mesh, &seals);
     if (r == RESULT_OK && seals) {
         set_rejected(b, 0);
+        reject_on_seals(b, mesh);
         r = settle(b, mesh);
         if (r != RESULT_OK || b->places.leaking == ZONE_NONE) return r;
     }
@@ -149,10 +150,11 @@ static result settle_sealed(zone_build *b, const compile_mesh *mesh)
 static result tell_leak(zone_build *b, compiled_zones *z)
 {
     const compile_entity *e = &b->in->entities[b->places.leaking];
+    const double *at = e->origin;
     z->leak = 1;
     report_warning(b->report, b->in->path, e->line,
-                   "the map leaks: the %s at %g %g %g can reach the void, so all of it is one open zone; close the hole that the leak line leads to",
-                   e->class_name, e->origin[0], e->origin[1], e->origin[2]);
+                   "the map leaks: the %s at %g %g %g in a map's units (%g %g %g m) can reach the void, so all of it is one open zone; close the hole that the leak line leads to",
+                   e->class_name, at[0] * UNITS_A_METRE + 0.0, -at[2] * UNITS_A_METRE + 0.0, at[1] * UNITS_A_METRE + 0.0, at[0], at[1], at[2]);
     return leak_line_make(b->in, &b->trace, b->places.leaking, b->memory, z);
 }
 
@@ -188,7 +190,10 @@ static result run(zone_build *b, compiled_zones *z)
     if (!z->zones) return RESULT_NO_MEMORY;
     for (uint32_t i = 0; i < z->zone_count; ++i) z->zones[i] = (compiled_zone){0};
     r = zone_places_name(b->in, &b->places, z);
-    return r == RESULT_OK ? zone_emit(&b->trace, &b->trace.rays, &b->places, z->leak ? ZONES_OPEN : ZONES_CLOSED, z) : r;
+    if (r == RESULT_OK) compile_tell(&(compile_view){STAGE_ZONES, b->in, .trace = &b->trace, .places = &b->places, .zones = z});
+    if (r == RESULT_OK) r = zone_emit(&b->trace, &b->trace.rays, &b->places, z->leak ? ZONES_OPEN : ZONES_CLOSED, z);
+    if (r == RESULT_OK) compile_tell(&(compile_view){STAGE_T_JUNCTIONS, b->in, .zones = z});
+    return r;
 }
 
 result compile_zones(const compile_input *in, compile_mesh *mesh, portal_choice choice, report *r, const allocator *memory, compiled_zones **out)
@@ -204,6 +209,7 @@ result compile_zones(const compile_input *in, compile_mesh *mesh, portal_choice 
     const uint32_t polygon_count = mesh->polygon_count;
     result made = portal_set_make(in, choice, r, memory, &b.portals);
     if (made == RESULT_OK) {
+        compile_tell(&(compile_view){STAGE_PORTALS, in, .portals = &b.portals});
         made = run(&b, z);
         portal_set_free(&b.portals);
     }

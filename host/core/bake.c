@@ -77,3 +77,13 @@ const scene_bake *bake_find(const scene *s, const bake_key *key)
     }
     return NULL;
 }
+
+const char *bake_fault(const scene *s, const bake_key *key)
+{
+    for (uint32_t i = first_of_zone(s, key->zone); i < s->bake_count && s->bakes[i].zone == key->zone; ++i) {
+        const scene_bake *b = &s->bakes[i];
+        if (b->options_hash != key->options_hash || strcmp(b->id, key->descriptor->id) != 0) continue;
+        return strcmp(b->version, key->descriptor->version) != 0 ? "another version of it made it" : "it is of other geometry, or of another chain";
+    }
+    return NULL;
+}

@@ -17,5 +17,7 @@ uint64_t bake_options_hash(const cull_descriptor *d, const char *const *values);
 uint64_t bake_zone_hash(const cull_zone *zone, const cull_hierarchy *lent);
 // The scene's blob for it, or NULL. Bakes stand in order of their zones.
 const scene_bake *bake_find(const scene *s, const bake_key *key);
+// Without one: why a blob of this zone, culler and options is not lent, in words; NULL: there is none.
+const char *bake_fault(const scene *s, const bake_key *key);
 
 #endif

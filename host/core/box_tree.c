@@ -23,21 +23,32 @@ static uint32_t random_below(uint64_t *state, uint32_t count)
     return (uint32_t)((*state >> 33) % count);
 }
 
-// The `middle` least by key come first. Both scans stop at equal keys, so many equal ones split evenly.
-static void select_half(tree_build *t, uint32_t *order, uint32_t count, uint32_t middle, int axis)
+// Of the boxes from `first` on, `count` of them.
+typedef struct tree_range { uint32_t first, count; } tree_range;
+
+static void swap_boxes(box_tree *t, uint32_t a, uint32_t b)
 {
-    const tree_box *boxes = t->tree->boxes;
-    uint32_t low = 0, high = count;
+    const uint32_t number = t->order[a];
+    t->order[a] = t->order[b];
+    t->order[b] = number;
+    const tree_box box = t->sorted[a];
+    t->sorted[a] = t->sorted[b];
+    t->sorted[b] = box;
+}
+
+// The `middle` least by key come first. Both scans stop at equal keys, so many equal ones split evenly.
+static void select_half(tree_build *t, tree_range r, uint32_t middle, int axis)
+{
+    const tree_box *boxes = t->tree->sorted + r.first;
+    uint32_t low = 0, high = r.count;
     while (high - low > 1) {
-        const double pivot = key(&boxes[order[low + random_below(&t->seed, high - low)]], axis);
+        const double pivot = key(&boxes[low + random_below(&t->seed, high - low)], axis);
         int64_t i = (int64_t)low - 1, j = high;
         for (;;) {
-            while (key(&boxes[order[++i]], axis) < pivot) {}
-            while (key(&boxes[order[--j]], axis) > pivot) {}
+            while (key(&boxes[++i], axis) < pivot) {}
+            while (key(&boxes[--j], axis) > pivot) {}
             if (i >= j) break;
-            const uint32_t swap = order[i];
-            order[i] = order[j];
-            order[j] = swap;
+            swap_boxes(t->tree, r.first + (uint32_t)i, r.first + (uint32_t)j);
         }
         const uint32_t split = (uint32_t)(j + 1) < high ? (uint32_t)(j + 1) : (uint32_t)j;
         if (middle < split) high = split;
@@ -45,52 +56,47 @@ static void select_half(tree_build *t, uint32_t *order, uint32_t count, uint32_t
     }
 }
 
-static tree_box bounds(const tree_build *t, const uint32_t *order, uint32_t count)
+static void widen(tree_box *all, const tree_box *b)
 {
-    tree_box all = t->tree->boxes[order[0]];
-    for (uint32_t i = 1; i < count; ++i) {
-        const tree_box *b = &t->tree->boxes[order[i]];
-        for (int k = 0; k < 3; ++k) {
-            all.min[k] = b->min[k] < all.min[k] ? b->min[k] : all.min[k];
-            all.max[k] = b->max[k] > all.max[k] ? b->max[k] : all.max[k];
-        }
+    for (int k = 0; k < 3; ++k) {
+        all->min[k] = b->min[k] < all->min[k] ? b->min[k] : all->min[k];
+        all->max[k] = b->max[k] > all->max[k] ? b->max[k] : all->max[k];
     }
-    return all;
 }
 
-static int longest_axis(const tree_build *t, const uint32_t *order, uint32_t count)
+static int longest_axis(const tree_build *t, tree_range r)
 {
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < r.count; ++i)
+        for (int k = 0; k < 3; ++k) {
+            const double at = key(&t->tree->sorted[r.first + i], k);
+            low[k] = at < low[k] ? at : low[k];
+            high[k] = at > high[k] ? at : high[k];
+        }
     int best = 0;
-    double most = -1;
-    for (int k = 0; k < 3; ++k) {
-        double low = INFINITY, high = -INFINITY;
-        for (uint32_t i = 0; i < count; ++i) {
-            const double at = key(&t->tree->boxes[order[i]], k);
-            low = at < low ? at : low;
-            high = at > high ? at : high;
-        }
-        if (high - low > most) {
-            most = high - low;
-            best = k;
-        }
-    }
+    for (int k = 1; k < 3; ++k)
+        if (high[k] - low[k] > high[best] - low[best]) best = k;
     return best;
 }
 
 // Depth is bounded by the halving: 32 at most.
-static void build(tree_build *t, uint32_t first, uint32_t count)
+static void build(tree_build *t, tree_range r)
 {
-    uint32_t *order = t->tree->order + first;
     const uint32_t at = t->node_count++;
     box_tree_node *node = &t->tree->nodes[at];
-    *node = (box_tree_node){.box = bounds(t, order, count), .first = first, .count = count};
-    if (count <= LEAF_MOST) return;
-    const uint32_t half = count / 2;
-    select_half(t, order, count, half, longest_axis(t, order, count));
-    build(t, first, half);
+    *node = (box_tree_node){.box = t->tree->sorted[r.first], .first = r.first, .count = r.count};
+    if (r.count <= LEAF_MOST) {
+        for (uint32_t i = 1; i < r.count; ++i) widen(&node->box, &t->tree->sorted[r.first + i]);
+        return;
+    }
+    const uint32_t half = r.count / 2;
+    select_half(t, r, half, longest_axis(t, r));
+    build(t, (tree_range){r.first, half});
     node->first = t->node_count;
     node->count = 0;
-    build(t, first + half, count - half);
+    build(t, (tree_range){r.first + half, r.count - half});
+    node->box = t->tree->nodes[at + 1].box;
+    widen(&node->box, &t->tree->nodes[node->first].box);
 }
 
 result box_tree_open(const tree_box *boxes, uint32_t count, const allocator *memory, box_tree *out)
@@ -99,13 +105,17 @@ result box_tree_open(const tree_box *boxes, uint32_t count, const allocator *mem
     if (!count) return RESULT_OK;
     out->nodes = memory_alloc(memory, out->node_capacity, sizeof *out->nodes);
     out->order = memory_alloc(memory, count, sizeof *out->order);
-    if (!out->nodes || !out->order) {
+    out->sorted = memory_alloc(memory, count, sizeof *out->sorted);
+    if (!out->nodes || !out->order || !out->sorted) {
         box_tree_close(out, memory);
         return RESULT_NO_MEMORY;
     }
-    for (uint32_t i = 0; i < count; ++i) out->order[i] = i;
+    for (uint32_t i = 0; i < count; ++i) {
+        out->order[i] = i;
+        out->sorted[i] = boxes[i];
+    }
     tree_build t = {.tree = out, .seed = count};
-    build(&t, 0, count);
+    build(&t, (tree_range){0, count});
     return RESULT_OK;
 }
 
@@ -113,6 +123,7 @@ void box_tree_close(box_tree *t, const allocator *memory)
 {
     memory_free(memory, t->nodes, t->node_capacity, sizeof *t->nodes);
     memory_free(memory, t->order, t->count, sizeof *t->order);
+    memory_free(memory, t->sorted, t->count, sizeof *t->sorted);
     *t = (box_tree){0};
 }
 
@@ -136,19 +147,22 @@ int box_walk_next(box_walk *w, uint32_t *out)
     const box_tree *t = w->tree;
     for (;;) {
         while (w->at < w->end) {
-            *out = t->order[w->at++];
-            if (touch(&t->boxes[*out], &w->box)) return 1;
+            const uint32_t at = w->at++;
+            if (!touch(&t->sorted[at], &w->box)) continue;
+            *out = t->order[at];
+            return 1;
         }
         if (!w->depth) return 0;
         const uint32_t at = w->stack[--w->depth];
         const box_tree_node *node = &t->nodes[at];
-        if (!touch(&node->box, &w->box)) continue;
-        w->at = node->first;
-        w->end = node->first + node->count;
-        if (!node->count) {
-            w->at = w->end = 0;
-            w->stack[w->depth++] = node->first;
-            w->stack[w->depth++] = at + 1;
+        if (node->count) {
+            w->at = node->first;
+            w->end = node->first + node->count;
+            continue;
         }
+        w->stack[w->depth] = node->first; // written anyway, kept or not
+        w->depth += (uint32_t)touch(&t->nodes[node->first].box, &w->box);
+        w->stack[w->depth] = at + 1;
+        w->depth += (uint32_t)touch(&t->nodes[at + 1].box, &w->box);
     }
 }

@@ -15,7 +15,8 @@ typedef struct box_tree_node {
 typedef struct box_tree {
     box_tree_node *nodes;
     uint32_t *order;
-    const tree_box *boxes;
+    tree_box *sorted;      // boxes[order[i]]: a leaf's lie side by side
+    const tree_box *boxes; // as given
     uint32_t count, node_capacity;
 } box_tree;
 

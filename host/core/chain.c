@@ -179,7 +179,13 @@ bake_key chain_bake_key(const chain *c, uint32_t place)
     return (bake_key){stage->plugin->descriptor, stage->options_hash, bake_zone_hash(zone, place == 0 ? NULL : c->hierarchy), c->data->index};
 }
 
-static void stage_find_blob(chain *c, uint32_t place, const char *const *values)
+static void tell_blob(const chain *c, uint32_t place, const char *why, report *r)
+{
+    report_warning(r, c->data->scene->path, 0, "culler '%s' cannot use its baked index of zone %u: %s; it is built anew, compile the scene again to keep it",
+                   c->stages[place].plugin->descriptor->id, c->data->index, why);
+}
+
+static void stage_find_blob(chain *c, uint32_t place, const char *const *values, report *r)
 {
     chain_stage *stage = &c->stages[place];
     const scene *s = c->data->scene;
@@ -188,7 +194,12 @@ static void stage_find_blob(chain *c, uint32_t place, const char *const *values)
     if (!s->bake_count) return; // nothing is hashed for nothing
     const bake_key key = chain_bake_key(c, place);
     const scene_bake *found = bake_find(s, &key);
-    if (found) stage->blob = (cull_blob){found->bytes, found->size};
+    if (found) {
+        stage->blob = (cull_blob){found->bytes, found->size};
+        return;
+    }
+    const char *why = bake_fault(s, &key);
+    if (why) tell_blob(c, place, why, r);
 }
 
 // ---- Building ----
@@ -206,6 +217,21 @@ static cull_result stage_create(chain_stage *stage, const char *const *values, c
     return code;
 }
 
+// A culler that refused its blob is made once more and lent none.
+static cull_result stage_build_anew(chain *c, uint32_t place, const char *const *values, const chain_request *q)
+{
+    chain_stage *stage = &c->stages[place];
+    loading_begins(q);
+    stage->plugin->destroy(stage->culler);
+    loading_ends(q);
+    stage->culler = NULL;
+    stage->blob = (cull_blob){NULL, 0};
+    stage->built = (cull_built){0};
+    const cull_result created = stage_create(stage, values, q);
+    if (!stage->culler) return created != CULL_OK ? created : CULL_ERR_ZONE;
+    return stage->plugin->build(stage->culler, stage->zone, c->hierarchy, &stage->built);
+}
+
 static result stage_build(chain *c, uint32_t place, const chain_request *q, report *r)
 {
     chain_stage *stage = &c->stages[place];
@@ -214,8 +240,12 @@ static result stage_build(chain *c, uint32_t place, const chain_request *q, repo
     if (done != RESULT_OK) return done;
     const cull_result created = stage_create(stage, values, q);
     if (!stage->culler) return tell_failure(created != CULL_OK ? created : CULL_ERR_ZONE, stage, "create an index for", r);
-    stage_find_blob(c, place, values);
-    const cull_result code = stage->plugin->build(stage->culler, stage->zone, c->hierarchy, &stage->built); // the first is lent none: it is not taken yet
+    stage_find_blob(c, place, values, r);
+    cull_result code = stage->plugin->build(stage->culler, stage->zone, c->hierarchy, &stage->built); // the first is lent none: it is not taken yet
+    if (code == CULL_ERR_BLOB && stage->blob.bytes) {
+        tell_blob(c, place, "the culler refused it", r);
+        code = stage_build_anew(c, place, values, q);
+    }
     if (code != CULL_OK) return tell_failure(code, stage, "build", r);
     done = built_is_sound(stage, c->hierarchy, r);
     if (done == RESULT_OK) done = slots_are_free(c, place, r);

@@ -16,6 +16,7 @@ enum { // scene_material.flags
     MATERIAL_TRANSLUCENT = 1u << 0, // liquids: two-sided, leave no depth
     MATERIAL_CUT_OUT = 1u << 1,     // alpha-tested
     MATERIAL_SKY = 1u << 2,
+    MATERIAL_NORMAL_MAP = 1u << 3, // its vertices have tangents
 };
 
 typedef struct scene_material {
@@ -142,7 +143,9 @@ typedef struct scene {
 
     cull_vec3 *positions;       // position_count
     uint32_t *normals;          // 3 x snorm8 in the low bytes, 0: flat shading
-    float *texcoords;           // 2 a vertex; NULL when no material needs them
+    float *texcoords;           // 2 a vertex; NULL when no material needs them: no holes, no normal map
+    // One for each vertex whose material has a normal map, in the vertices' order: scene_tangent_unpack. NULL: no such material.
+    uint32_t *tangents;
     uint16_t *vertex_materials; // 1 a vertex
     uint32_t *indices;          // index_count, counterclockwise from the front
     uint32_t *polygon_first_triangle; // polygon_count + 1
@@ -182,6 +185,7 @@ typedef struct scene {
     void *file;                      // of a scene file: the arrays lie in it; else NULL
     size_t file_bytes;
 
+    uint32_t tangent_count;
     uint32_t position_count, index_count, polygon_count, item_count, mover_count;
     uint32_t wall_vertex_count, plane_count, material_count, object_count, place_count;
     uint32_t solid_count, solid_plane_count;
@@ -195,6 +199,9 @@ double scene_radius_m(const scene *s);               // half the diagonal of the
 void scene_pose_at(const scene *s, uint32_t mover, double time_s, door_state door, scene_pose *out);
 // Holds the mover in that pose, world; for whole poses (no turn) as tight as the geometry.
 void scene_pose_box(const scene *s, uint32_t mover, const scene_pose *pose, double min[3], double max[3]);
+// A unit vector along u at a right angle to the normal, 10 bits a component from the lowest on, and in the top 2 bits which
+// way round the texture lies: binormal = turn * cross(normal, tangent).
+void scene_tangent_unpack(uint32_t packed, double tangent[3], int *turn);
 // Largest of normal . p - distance over the planes of the hull: below 0 inside. A distance where it is a face that is near.
 double scene_hull_height(const scene *s, uint32_t hull, const double p[3]);
 
@@ -223,13 +230,21 @@ result scene_builder_open(const allocator *memory, scene_builder **out);
 void scene_builder_close(scene_builder *b); // NULL is fine
 result scene_builder_material(scene_builder *b, const char *name, size_t length, uint32_t flags, uint32_t *out); // found again by name
 result scene_builder_material_colour(scene_builder *b, uint32_t material, uint32_t colour);
+uint32_t scene_builder_material_count(const scene_builder *b);
+const scene_material *scene_builder_material_at(const scene_builder *b, uint32_t material); // lent until the next one is added
+void scene_builder_material_mark(scene_builder *b, uint32_t material); // it has a normal map; before scene_builder_finish
 result scene_builder_object(scene_builder *b, const char *name, size_t length, uint32_t *out); // a new one each call
 result scene_builder_vertices(scene_builder *b, const builder_vertex *vertices, size_t count, uint32_t material, uint32_t *out_first);
 result scene_builder_item(scene_builder *b, const builder_item *item);        // static; RESULT_BAD_INPUT: an index is out of range
+// The static item added last is listed in just these zones, not in each that its box touches: who traced it to its zone
+// knows better. BAD_INPUT: no such zone, one twice, none, no item yet, or said twice of it.
+result scene_builder_item_zones(scene_builder *b, const uint32_t *zones, uint32_t count);
 result scene_builder_mover(scene_builder *b, const char *name, const double open_offset[3], const builder_item *item);
 result scene_builder_place(scene_builder *b, const scene_place *place);
 result scene_builder_solid(scene_builder *b, solid_kind kind, const scene_solid_plane *planes, uint32_t plane_count,
                            const double min[3], const double max[3]);
+// Takes the body out of the structure's solids so far; they become convex pieces. Of an empty body: nothing.
+result scene_builder_solid_subtract(scene_builder *b, const scene_solid_plane *planes, uint32_t plane_count);
 // Steps a metre of the items' exact planes: a whole number above 0. Walls then share a plane where these are equal, number
 // for number. The scene gets them where every wall has one, no transform is on and all fit 63 bits about its origin.
 void scene_builder_grid(scene_builder *b, double steps_per_metre);

@@ -40,6 +40,7 @@ result scene_builder_open(const allocator *memory, scene_builder **out)
     b->walls = buffer_make(memory, sizeof(builder_wall));
     b->wall_vertices = buffer_make(memory, sizeof(uint32_t));
     b->exact_planes = buffer_make(memory, sizeof(cull_exact_plane));
+    b->own_zones = buffer_make(memory, sizeof(builder_own_zone));
     b->materials = buffer_make(memory, sizeof(scene_material));
     b->material_slots = buffer_make(memory, sizeof(uint32_t));
     b->objects = buffer_make(memory, sizeof(scene_object));
@@ -70,7 +71,7 @@ void scene_builder_close(scene_builder *b)
     buffer *const all[] = {&b->positions,  &b->normals,        &b->texcoords,  &b->vertex_materials, &b->walls,  &b->wall_vertices, &b->materials,
                            &b->material_slots, &b->objects, &b->mover_list, &b->places, &b->solids, &b->solid_planes, &b->zones,
                            &b->zone_slots, &b->hulls, &b->hull_planes, &b->gates, &b->gate_points, &b->doors, &b->keys, &b->lights,
-                           &b->paths, &b->cameras, &b->exact_planes};
+                           &b->paths, &b->cameras, &b->exact_planes, &b->own_zones};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) buffer_free(all[i]);
     arena_free(&b->names);
     memory_free(b->memory, b, 1, sizeof *b);
@@ -128,6 +129,21 @@ result scene_builder_material_colour(scene_builder *b, uint32_t material, uint32
     if (material >= b->materials.count) return RESULT_BAD_INPUT;
     ((scene_material *)b->materials.items)[material].colour = colour;
     return RESULT_OK;
+}
+
+uint32_t scene_builder_material_count(const scene_builder *b)
+{
+    return (uint32_t)b->materials.count;
+}
+
+const scene_material *scene_builder_material_at(const scene_builder *b, uint32_t material)
+{
+    return (const scene_material *)b->materials.items + material;
+}
+
+void scene_builder_material_mark(scene_builder *b, uint32_t material)
+{
+    ((scene_material *)b->materials.items)[material].flags |= MATERIAL_NORMAL_MAP;
 }
 
 result scene_builder_object(scene_builder *b, const char *name, size_t length, uint32_t *out)
@@ -250,6 +266,22 @@ result scene_builder_item(scene_builder *b, const builder_item *item)
     b->wall_count += loop_count != 0;
     if (keep_exact(b, item, loop_count) != RESULT_OK) return RESULT_NO_MEMORY;
     return loop_count && !buffer_append(&b->wall_vertices, item->loop, loop_count) ? RESULT_NO_MEMORY : RESULT_OK;
+}
+
+result scene_builder_item_zones(scene_builder *b, const uint32_t *zones, uint32_t count)
+{
+    const builder_own_zone *known = b->own_zones.items;
+    const uint32_t item = (uint32_t)b->statics.items.count - 1;
+    if (b->statics.items.count == 0 || count == 0) return RESULT_BAD_INPUT;
+    if (b->own_zones.count && known[b->own_zones.count - 1].item == item) return RESULT_BAD_INPUT;
+    for (uint32_t i = 0; i < count; ++i) {
+        if (zones[i] >= b->zones.count) return RESULT_BAD_INPUT;
+        for (uint32_t k = 0; k < i; ++k)
+            if (zones[k] == zones[i]) return RESULT_BAD_INPUT;
+    }
+    builder_own_zone *to = buffer_push(&b->own_zones, count);
+    for (uint32_t i = 0; i < count && to; ++i) to[i] = (builder_own_zone){item, zones[i]};
+    return to ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
 // Middle of the item's vertices' box, world.

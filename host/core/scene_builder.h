@@ -19,6 +19,8 @@ typedef struct builder_wall { // of a static item, in order
     double plane[4];
 } builder_wall;
 
+typedef struct builder_own_zone { uint32_t item, zone; } builder_own_zone;
+
 // What builder_transform says, taken apart. world = scale * turn * p + move.
 typedef struct builder_map {
     double turn[9], move[3], scale; // turn: rows, orthonormal
@@ -42,6 +44,7 @@ struct scene_builder {
     buffer walls;         // builder_wall, one a static item
     buffer wall_vertices; // uint32_t
     buffer exact_planes;  // cull_exact_plane, one a static item once there is a grid; zeros of what is no wall
+    buffer own_zones;     // builder_own_zone, by item: of static items that were given their zones
     buffer materials;     // scene_material
     buffer material_slots; // uint32_t: open addressing by name, material + 1
     buffer objects;       // scene_object

@@ -68,22 +68,29 @@ double finish_origin(double middle)
     return floor(middle + 0.5); // not to even: halves round alike wherever the scene lies
 }
 
+finish_frame finish_frame_of(const double low[3], const double high[3])
+{
+    finish_frame f = {.radius = 0};
+    for (int k = 0; k < 3; ++k) {
+        f.origin[k] = finish_origin((low[k] + high[k]) / 2);
+        f.radius = fmax(f.radius, fmax(high[k] - f.origin[k], f.origin[k] - low[k]));
+    }
+    int exponent;
+    if (frexp(f.radius, &exponent) == 0.5) exponent--; // 2^24 steps themselves are exact
+    f.step = ldexp(1, exponent - STEPS_LOG2 > STEP_LOG2_LEAST ? exponent - STEPS_LOG2 : STEP_LOG2_LEAST);
+    return f;
+}
+
 static result choose_origin(finish *f, const char *path, report *r)
 {
-    scene *s = f->s;
-    double radius = 0;
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3; ++k)
         if (f->low[k] < -COORDINATE_MOST || f->high[k] > COORDINATE_MOST)
             return report_error(r, path, 0, "a coordinate beyond 1e9 m; move the scene nearer to its origin");
-        const double middle = (f->low[k] + f->high[k]) / 2;
-        s->whole.origin[k] = finish_origin(middle);
-        radius = fmax(radius, fmax(f->high[k] - s->whole.origin[k], s->whole.origin[k] - f->low[k]));
-    }
-    if (radius > ZONE_RADIUS_MOST)
-        return report_error(r, path, 0, "the scene is %.0f m wide; one zone holds 32,768 m at 1 mm, so split or scale it", 2 * radius);
-    int exponent;
-    if (frexp(radius, &exponent) == 0.5) exponent--; // 2^24 steps themselves are exact
-    s->step = ldexp(1, exponent - STEPS_LOG2 > STEP_LOG2_LEAST ? exponent - STEPS_LOG2 : STEP_LOG2_LEAST);
+    const finish_frame frame = finish_frame_of(f->low, f->high);
+    if (frame.radius > ZONE_RADIUS_MOST)
+        return report_error(r, path, 0, "the scene is %.0f m wide; one zone holds 32,768 m at 1 mm, so split or scale it", 2 * frame.radius);
+    memcpy(f->s->whole.origin, frame.origin, sizeof f->s->whole.origin);
+    f->s->step = frame.step;
     return RESULT_OK;
 }
 
@@ -280,7 +287,7 @@ static void finish_lists(finish *f, const char *path)
     }
     for (uint32_t i = 0; !f->failed && i < s->object_count; ++i) s->objects[i].name = finish_text(f, s->objects[i].name);
     for (uint32_t i = 0; !f->failed && i < s->mover_count; ++i) s->movers[i].name = finish_text(f, s->movers[i].name);
-    if (flags & MATERIAL_CUT_OUT) s->texcoords = finish_copy(f, &b->texcoords);
+    if (flags & (MATERIAL_CUT_OUT | MATERIAL_NORMAL_MAP)) s->texcoords = finish_copy(f, &b->texcoords);
 }
 
 static void finish_objects(scene *s)
@@ -312,6 +319,9 @@ static uint64_t hash_of(const scene *s)
 
 static result fill(finish *f, const char *path, report *r)
 {
+    const result parted = finish_part_mirrored(f->b);
+    if (parted == RESULT_NO_MEMORY) return report_no_memory(r, path);
+    if (parted != RESULT_OK) return report_error(r, path, 0, "over 2^32 vertices; split the scene");
     find_bounds(f);
     const result origin = choose_origin(f, path, r);
     if (origin != RESULT_OK) return origin;
@@ -320,6 +330,7 @@ static result fill(finish *f, const char *path, report *r)
     if (!f->failed) find_boxes(f);
     if (!f->failed) finish_lists(f, path);
     if (!f->failed) finish_walls(f);
+    if (!f->failed) finish_tangents(f);
     if (f->failed) return report_no_memory(r, path);
     finish_objects(f->s);
     count_flat_triangles(f->s);

@@ -21,6 +21,12 @@ int finish_portal_plane(const double (*points)[3], uint32_t count, double out[4]
 void finish_zone_origin(const scene *s, uint32_t zone, double out[3]);
 double finish_round(double v);       // |v| < 2^51: to the nearest integer, ties to even
 double finish_origin(double middle); // to the grid of 1 m: whole moves of a scene change nothing else
+// Where a scene of those bounds has its origin, and the step that all its coordinates are rounded to.
+typedef struct finish_frame { double origin[3], radius, step; } finish_frame;
+finish_frame finish_frame_of(const double low[3], const double high[3]);
+// Tangents where a material has a normal map (scene_tangents.c): before the vertices are numbered for good, and at the end.
+result finish_part_mirrored(scene_builder *b);
+void finish_tangents(finish *f);
 // Zones, portals, doors and all that is copied as it is; the scene's geometry is there. Changes the hash where there
 // are zones or paths.
 result finish_zones(finish *f, const char *path, report *r);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Invariant: an item is listed in every zone that its box touches, but in none with a zone in it that holds the box wholly:
 // of a chain of such zones the innermost lists it. What touches no zone goes to the stray one, so nothing is ever lost.
+// An item that was given its zones is listed there alone.
 #include "box_tree.h"
 #include "scene_finish.h"
 #include "zone_seam.h"
@@ -24,6 +25,7 @@ typedef struct listing {
     uint32_t *touched, *taken; // by zone: 1 + the item last seen so
     uint32_t *found;           // zones that the item touches
     zone_seam *seams;          // by zone
+    const builder_own_zone *own, *own_end; // of the next item that was given its zones, from there on
     uint32_t everywhere, found_count;
     box_tree tree;
     buffer pairs; // listing_pair, by item
@@ -60,7 +62,6 @@ static void find_zones(listing *l, uint32_t item)
     const uint32_t stamp = item + 1;
     box_walk walk;
     uint32_t hull;
-    l->found_count = 0;
     box_walk_start(&walk, &l->tree, &box);
     while (box_walk_next(&walk, &hull)) {
         const fit how = fit_of(l, hull, &box);
@@ -77,7 +78,9 @@ static result list_item(listing *l, uint32_t item)
 {
     scene *s = l->s;
     uint32_t kept = 0;
-    find_zones(l, item);
+    l->found_count = 0;
+    for (; l->own < l->own_end && l->own->item == item; ++l->own) l->found[l->found_count++] = l->own->zone;
+    if (l->found_count == 0) find_zones(l, item);
     if (l->found_count == 0) {
         l->found[l->found_count++] = s->zone_count; // the stray one
         s->stray_items++;
@@ -190,7 +193,10 @@ result finish_listings(finish *f, const char *path, report *r)
     if (s->zone_count == 1 && s->zones[0].flags & ZONE_EVERYWHERE) {
         done = list_plain(f);
     } else {
+        const buffer *own = &f->b->own_zones;
         listing l = {.s = s, .memory = f->b->memory, .everywhere = f->b->everywhere, .pairs = buffer_make(f->b->memory, sizeof(listing_pair))};
+        l.own = own->items;
+        l.own_end = l.own ? l.own + own->count : NULL;
         done = list_all(f, &l);
         listing_close(&l);
     }

@@ -142,17 +142,86 @@ result entry_points(const json_node *list, size_t least, size_t most, double (*o
 
 // ---- The whole ----
 
+typedef result (*scene_pass)(json_scene *s);
+
+static result run_passes(json_scene *s, const scene_pass *passes, size_t count)
+{
+    result done = RESULT_OK;
+    for (size_t p = 0; p < count && done == RESULT_OK; ++p) done = passes[p](s);
+    return done;
+}
+
+// The first document with anything in that list, or nothing: *found 0.
+static result find_list(const json_scene *s, const char *key, json_node *root, json_node *list, size_t *found)
+{
+    json_document *const *documents = s->documents.items;
+    result done = RESULT_OK;
+    *found = 0;
+    for (size_t d = 0; d < s->documents.count && done == RESULT_OK && !*found; ++d) {
+        *root = node_root(&documents[d]->file);
+        if (node_find(root, key, list)) done = node_array(list, 0, NODES_MOST, found);
+    }
+    return done;
+}
+
+typedef struct refused_list { const char *key, *why; } refused_list;
+
+static result refuse_lists(json_scene *s, const refused_list *lists, size_t count)
+{
+    json_node root, list;
+    size_t found = 0;
+    for (size_t i = 0; i < count; ++i) {
+        const result done = find_list(s, lists[i].key, &root, &list, &found);
+        if (done != RESULT_OK) return done;
+        if (found) return node_fault(&list, "%s", lists[i].why);
+    }
+    return RESULT_OK;
+}
+
+static result refuse_brushes(json_scene *s)
+{
+    static const refused_list lists[] = {
+        {"zone_info", "it names zones of brushes, and there are none; use \"zones\", or add \"brushes\""},
+        {"starts", "they stand among brushes, and there are none; take them out, or add \"brushes\""},
+    };
+    json_node root, list;
+    size_t found;
+    const result done = find_list(s, "brushes", &root, &list, &found);
+    if (done != RESULT_OK) return done;
+    if (found) return node_fault(&list, "brushes are to be compiled first: portcullis compile %.200s -o SCENE.pcs, then open that", s->job->path);
+    return refuse_lists(s, lists, sizeof lists / sizeof *lists);
+}
+
 static result read_passes(json_scene *s)
 {
-    static result (*const passes[])(json_scene *) = {documents_load, geometry_read, zones_read,  doors_list, movers_read,
-                                                     doors_read,     portals_read,  lights_read, paths_read};
-    result done = RESULT_OK;
-    for (size_t p = 0; p < sizeof passes / sizeof *passes && done == RESULT_OK; ++p) done = passes[p](s);
+    static const scene_pass passes[] = {documents_load, refuse_brushes, geometry_read, zones_read,  doors_list,
+                                        movers_read,    doors_read,     portals_read,  lights_read, paths_read};
+    const result done = run_passes(s, passes, sizeof passes / sizeof *passes);
     if (done != RESULT_OK || scene_builder_item_count(s->job->builder)) return done;
     return report_error(s->job->report, s->job->path, 0, "no polygon to draw; add \"meshes\", \"boxes\", \"walls\" or \"movers\"");
 }
 
-result json_into(const reader_job *j)
+static result refuse_zones(json_scene *s)
+{
+    static const refused_list lists[] = {
+        {"zones", "zones by hand beside brushes; the compiler finds them: name them with \"zone_info\" and take this out"},
+        {"portals", "portals by hand beside brushes; use brushes with \"operation\": \"portal\" and take this out"},
+    };
+    json_node root, list;
+    size_t found;
+    const result done = find_list(s, "brushes", &root, &list, &found);
+    if (done != RESULT_OK) return done;
+    if (!found) return report_error(s->job->report, s->job->path, 0, "no brushes to compile; add \"brushes\", or open the scene as it is");
+    return refuse_lists(s, lists, sizeof lists / sizeof *lists);
+}
+
+static result read_beside(json_scene *s)
+{
+    static const scene_pass passes[] = {documents_load, refuse_zones, geometry_read, doors_list, movers_read, doors_read, lights_read, paths_read};
+    return run_passes(s, passes, sizeof passes / sizeof *passes);
+}
+
+static result scene_run(const reader_job *j, const json_more *more)
 {
     const allocator *memory = j->memory;
     json_scene s = {.job = j,
@@ -161,13 +230,15 @@ result json_into(const reader_job *j)
                     .door_list = buffer_make(memory, sizeof(door_entry)),
                     .errors_before = j->report->errors,
                     .bounds = builder_bounds_none(),
+                    .user = more ? more->user : NULL,
                     .object = SCENE_NONE};
     name_table *const tables[] = {&s.zones, &s.portals, &s.doors, &s.movers, &s.paths, &s.moved};
     const size_t table_count = sizeof tables / sizeof *tables;
     for (size_t t = 0; t < table_count; ++t) *tables[t] = name_table_make(memory);
     sources_open(&s);
     models_open(&s);
-    const result done = read_passes(&s);
+    result done = more ? read_beside(&s) : read_passes(&s);
+    if (done == RESULT_OK && more) done = more->read(&s);
     for (size_t t = 0; t < table_count; ++t) name_table_free(tables[t]);
     buffer_free(&s.documents);
     sources_free(&s);
@@ -175,4 +246,14 @@ result json_into(const reader_job *j)
     buffer_free(&s.door_list);
     arena_free(&s.memory);
     return done;
+}
+
+result json_into(const reader_job *j)
+{
+    return scene_run(j, NULL);
+}
+
+result json_beside(const reader_job *j, const json_more *more)
+{
+    return scene_run(j, more);
 }

@@ -9,7 +9,7 @@
 enum { DEPTH_MOST = 64, CHAIN_BYTES = 512, PATH_BYTES = 4096, PIECES_MOST = 65536, FORMAT = 1 };
 
 static const char *const top_keys[] = {"portcullis", "name",  "include", "meshes", "boxes", "walls",   "zones",
-                                       "portals",    "doors", "movers",  "lights", "paths", "$schema", NULL};
+                                       "portals",    "doors", "movers",  "lights", "paths", "brushes", "zone_info", "starts", "$schema", NULL};
 static const char *const include_keys[] = {"file", "name", PLACEMENT_KEYS, NULL};
 
 // ---- Paths ----

@@ -155,3 +155,31 @@ json_place json_place_find(const char *text, size_t size, const json_step *steps
     }
     return json_place_at(text, (size_t)(s.at - text));
 }
+
+// ---- Lines of a list ----
+
+static void pass_to(json_item_lines *l, const char *to)
+{
+    for (; l->at < to; ++l->at) l->line += *l->at == '\n';
+}
+
+json_item_lines json_item_lines_of(const char *text, size_t size, const char *list_key)
+{
+    json_item_lines l = {text, text + size, 1};
+    scan s = {text, l.end};
+    skip_space(&s);
+    if (enter_key(&s, list_key, PLACE_OF_VALUE) == WAY_FOUND && take(&s, '[')) pass_to(&l, s.at);
+    return l;
+}
+
+size_t json_item_lines_next(json_item_lines *l)
+{
+    scan s = {l->at, l->end};
+    skip_space(&s);
+    pass_to(l, s.at);
+    const size_t line = l->line;
+    skip_value(&s);
+    (void)take(&s, ',');
+    pass_to(l, s.at);
+    return line;
+}

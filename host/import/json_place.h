@@ -11,6 +11,10 @@ typedef enum json_place_kind { PLACE_OF_VALUE, PLACE_OF_KEY } json_place_kind; /
 
 // The text must be JSON that a parser took. Where the steps lead nowhere, the place where they end. [any thread]
 json_place json_place_find(const char *text, size_t size, const json_step *steps, size_t step_count, json_place_kind kind);
+// Lines of the items of one list of the whole value, one after the other, in one walk over the text.
+typedef struct json_item_lines { const char *at, *end; size_t line; } json_item_lines;
+json_item_lines json_item_lines_of(const char *text, size_t size, const char *list_key);
+size_t json_item_lines_next(json_item_lines *l);
 json_place json_place_at(const char *text, size_t offset); // of a byte
 
 #endif

@@ -40,6 +40,7 @@ typedef struct json_scene {
     size_t zones_added;
     uint32_t errors_before; // of the report: one more, and what is wrong has been told
     uint32_t pieces;       // files read, copies made: bounded, because includes multiply
+    void *user;            // of json_beside's caller
     uint32_t object;       // that boxes and walls without a name go to; SCENE_NONE: a new one
 } json_scene;
 
@@ -62,6 +63,12 @@ result movers_read(json_scene *s);
 result doors_read(json_scene *s);
 result lights_read(json_scene *s);
 result paths_read(json_scene *s);
+
+// ---- Scenes with brushes, for the compiler ----
+// All that stands beside the brushes into the job's builder, then `more` over the same documents; whose lists those are:
+// "brushes", "zone_info", "starts". Zones and portals by hand are refused.
+typedef struct json_more { result (*read)(json_scene *s); void *user; } json_more;
+result json_beside(const reader_job *j, const json_more *more);
 
 // ---- Files, each read once ----
 typedef struct source_text { const char *bytes; char *own; size_t size; } source_text; // own: to be freed as file_read says, or NULL
@@ -94,6 +101,7 @@ result entry_file(const json_entry *e, const json_node *file, const char **out_p
 result entry_text(const json_entry *e, const json_node *file, const char *path, char **out_text, size_t *out_size); // free as file_read says
 result entry_count_piece(const json_entry *e);
 result entry_room(const json_entry *e, uint64_t size_each, uint32_t copies); // for as many of scene_builder_size each
+result entry_chain(const json_entry *e, const char **out); // of its key "chain"; as it was when there is none
 result entry_points(const json_node *list, size_t least, size_t most, double (*out)[3], size_t *out_count);
 
 #endif

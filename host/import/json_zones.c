@@ -85,7 +85,7 @@ static void keep_text(void *user, report_level level, const char *text)
 }
 
 // Its form only: what plugins there are is known when they are loaded.
-static result read_chain(const json_entry *e, const char **out)
+result entry_chain(const json_entry *e, const char **out)
 {
     static const char before[] = "portcullis: error: ";
     char line[LINE_BYTES] = "";
@@ -108,7 +108,7 @@ static result add_zone(const json_entry *e, const zone_shape *s, const char *nam
     builder_zone zone = {.name = name, .parent = parent, .hull_count = (uint32_t)s->counts.count};
     const uint32_t *counts = s->counts.items;
     const scene_solid_plane *planes = s->planes.items;
-    result done = read_chain(e, &zone.chain);
+    result done = entry_chain(e, &zone.chain);
     if (done != RESULT_OK) return done;
     builder_hull *hulls = memory_alloc(e->scene->job->memory, s->counts.count, sizeof *hulls);
     if (!hulls) return entry_no_memory(e);

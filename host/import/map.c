@@ -122,7 +122,9 @@ static result add_mover(map_import *i, const char *name, const double offset[3],
 
 // ---- Bodies and places ----
 
-static result add_solid(map_import *i, const staged_solid *solid, const double offset[3])
+typedef enum solid_use { SOLID_ADDED, SOLID_TAKEN } solid_use;
+
+static result add_solid(map_import *i, const staged_solid *solid, const double offset[3], solid_use use)
 {
     staged_plane *planes = (staged_plane *)i->stage.solid_planes.items + solid->first_plane;
     i->planes.count = 0;
@@ -132,6 +134,7 @@ static result add_solid(map_import *i, const staged_solid *solid, const double o
         turn_to_scene(planes[p].normal, to[p].normal);
         to[p].distance = (planes[p].distance + dot(planes[p].normal, offset)) / UNITS_PER_METRE;
     }
+    if (use == SOLID_TAKEN) return scene_builder_solid_subtract(i->builder, to, (uint32_t)solid->plane_count);
     double low[3], high[3];
     to_scene(solid->min, offset, low);
     to_scene(solid->max, offset, high);
@@ -172,10 +175,11 @@ static result add_bodies(map_import *i, const double offset[3])
     static const double nowhere[3] = {0};
     const double *const places[2] = {nowhere, offset};
     const int count = memcmp(offset, nowhere, sizeof nowhere) != 0 ? 2 : 1;
+    const solid_use use = entity_body_of(entity_class(&i->entity)) == BODY_HOLLOW ? SOLID_TAKEN : SOLID_ADDED;
     result done = RESULT_OK;
     for (int p = 0; p < count; ++p)
         for (size_t n = 0; n < i->stage.solids.count && done == RESULT_OK; ++n)
-            done = add_solid(i, (const staged_solid *)i->stage.solids.items + n, places[p]);
+            done = add_solid(i, (const staged_solid *)i->stage.solids.items + n, places[p], use);
     return done;
 }
 
@@ -203,7 +207,7 @@ static result add_entity(map_import *i)
     if (e->brushes.count == 0) return add_place(i);
     const map_word class_name = entity_class(e);
     const entity_role role = entity_role_of(class_name);
-    if (role == ENTITY_NOTHING) return RESULT_OK;
+    if (role == ENTITY_NOTHING || map_word_is(class_name, "zone_portal")) return RESULT_OK; // the compiler's, nothing to see
     map_stage_clear(&i->stage);
     for (size_t b = 0; b < e->brushes.count; ++b) {
         const result done = map_stage_brush(&i->stage, e, b, entity_body_of(class_name), &i->reader);

@@ -24,7 +24,9 @@ entity_role entity_role_of(map_word class_name)
 entity_body entity_body_of(map_word class_name)
 {
     if (map_word_starts(class_name, "trigger_") || map_word_is(class_name, "func_detail_illusionary")) return BODY_NONE;
-    if (map_word_is(class_name, "worldspawn") || map_word_is(class_name, "func_group") || map_word_starts(class_name, "func_detail"))
+    if (map_word_is(class_name, "csg_subtract")) return BODY_HOLLOW;
+    if (map_word_is(class_name, "worldspawn") || map_word_is(class_name, "func_group") || map_word_is(class_name, "csg_add") ||
+        map_word_starts(class_name, "func_detail"))
         return BODY_STRUCTURE;
     return BODY_ENTITY;
 }

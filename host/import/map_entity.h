@@ -16,6 +16,7 @@ typedef enum entity_body { // what its brushes are to free-space tests
     BODY_NONE,
     BODY_STRUCTURE,
     BODY_ENTITY,
+    BODY_HOLLOW, // takes away from the structure before it
 } entity_body;
 
 map_word entity_class(const map_entity *e); // empty when it says none

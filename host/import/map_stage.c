@@ -43,7 +43,7 @@ static const map_face *faces_of(const map_entity *e, const map_brush *brush)
     return (const map_face *)e->faces.items + brush->first_face;
 }
 
-typedef struct brush_look { int visible, liquid, wall; } brush_look;
+typedef struct brush_look { int visible, liquid; } brush_look; // liquid: one face is enough, as in Quake's compilers
 
 static brush_look look_of(const map_face *faces, size_t count)
 {
@@ -52,7 +52,6 @@ static brush_look look_of(const map_face *faces, size_t count)
         const texture_kind kind = texture_kind_of(faces[i].texture);
         look.visible |= kind != TEXTURE_TOOL;
         look.liquid |= kind == TEXTURE_LIQUID;
-        look.wall |= kind != TEXTURE_TOOL && kind != TEXTURE_LIQUID;
     }
     return look;
 }
@@ -141,9 +140,8 @@ static result stage_body(map_stage *s, const map_face *faces, entity_body body, 
         s->max[k] = fmax(s->max[k], b.max[k]);
     }
     result done = RESULT_OK;
-    const int is_liquid = look.liquid && !look.wall;
-    if (is_liquid) done = stage_solid(s, SOLID_LIQUID, &b);
-    else if (body != BODY_NONE) done = stage_solid(s, body == BODY_STRUCTURE ? SOLID_STRUCTURE : SOLID_ENTITY, &b);
+    if (look.liquid && body != BODY_HOLLOW) done = stage_solid(s, SOLID_LIQUID, &b);
+    else if (body != BODY_NONE) done = stage_solid(s, body == BODY_ENTITY ? SOLID_ENTITY : SOLID_STRUCTURE, &b);
     for (size_t l = 0; l < s->body.loops.count && done == RESULT_OK; ++l) {
         const brush_loop *loop = (const brush_loop *)s->body.loops.items + l;
         if (texture_kind_of(faces[loop->plane].texture) != TEXTURE_TOOL) done = stage_polygon(s, &faces[loop->plane], loop);

@@ -8,7 +8,7 @@
 
 #include "../core/scene.h"
 
-enum { PCS_VERSION = 1, PCS_ALIGN = 64 };
+enum { PCS_VERSION = 2, PCS_ALIGN = 64 };
 #define PCS_MAGIC "\x89PCS\r\n\x1a\n" // a copy as text, or of 7 bits, changes it
 #define PCS_BYTES_MOST (UINT64_C(1) << 40)
 
@@ -68,6 +68,7 @@ typedef struct pcs_point { double at[3]; } pcs_point;
     X(POSITIONS, cull_vec3, 12)                                                                                               \
     X(NORMALS, uint32_t, 4)                                                                                                   \
     X(TEXCOORDS, float, 4)                                                                                                    \
+    X(TANGENTS, uint32_t, 4)                                                                                                  \
     X(VERTEX_MATERIALS, uint16_t, 2)                                                                                          \
     X(INDICES, uint32_t, 4)                                                                                                   \
     X(POLYGON_FIRST_TRIANGLE, uint32_t, 4)                                                                                    \

@@ -20,6 +20,8 @@ static const double WALL_PLANE_SHARE = 1.0 / 32768;            // of the scene's
 static const double EXACT_PLANE_MOST = 1.0 / 64;               // metres: an exact plane from the same in float
 static const double EXACT_NORMAL_MOST = 1e-5;                  // cosine: the same of their normals
 
+static const double TANGENT_UNIT = 1.0 / 128;                  // of its square: components of 10 bits
+
 int check_finite(const double *v, int count)
 {
     int finite = 1;
@@ -62,6 +64,22 @@ static const char *check_vertices(const scene *s)
         if (!isfinite(s->texcoords[i])) return "a texture coordinate that is not finite";
     for (uint32_t i = 0; i < s->index_count; ++i)
         if (s->indices[i] >= s->position_count) return "a triangle of a vertex that is not there";
+    return NULL;
+}
+
+// Of each vertex that needs one: a unit vector and a sign. Texture coordinates are there too.
+static const char *check_tangents(const scene *s)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < s->position_count; ++i) count += (s->materials[s->vertex_materials[i]].flags & MATERIAL_NORMAL_MAP) != 0;
+    if (count != s->tangent_count) return "tangents that are not those of its normal maps";
+    if (count && !s->texcoords) return "a normal map without texture coordinates";
+    for (uint32_t i = 0; i < count; ++i) {
+        double v[3];
+        int turn;
+        scene_tangent_unpack(s->tangents[i], v, &turn);
+        if (!turn || !(fabs((v[0] * v[0] + v[1] * v[1]) + v[2] * v[2] - 1) < TANGENT_UNIT)) return "a tangent that is no unit vector";
+    }
     return NULL;
 }
 
@@ -116,7 +134,7 @@ static const char *check_groups(const scene *s)
 {
     if (s->material_count == 0 || s->material_count > UINT16_MAX || s->object_count == 0) return "no material or object, or too many materials";
     for (uint32_t i = 0; i < s->material_count; ++i)
-        if (s->materials[i].flags & ~(uint32_t)(MATERIAL_TRANSLUCENT | MATERIAL_CUT_OUT | MATERIAL_SKY)) return "a material with flags that nobody knows";
+        if (s->materials[i].flags & ~(uint32_t)(MATERIAL_TRANSLUCENT | MATERIAL_CUT_OUT | MATERIAL_SKY | MATERIAL_NORMAL_MAP)) return "a material with flags that nobody knows";
     for (uint32_t i = 0; i < s->object_count; ++i)
         if (s->objects[i].first_item > s->item_count || s->objects[i].item_count > s->item_count - s->objects[i].first_item)
             return "an object of items that are not there";
@@ -187,7 +205,7 @@ static const char *check_walls(const scene *s)
 
 const char *check_geometry(const scene *s)
 {
-    static const char *(*const checks[])(const scene *) = {check_whole, check_vertices, check_items, check_boxes, check_groups, check_walls};
+    static const char *(*const checks[])(const scene *) = {check_whole, check_vertices, check_items, check_boxes, check_groups, check_tangents, check_walls};
     const char *fault = NULL;
     for (size_t i = 0; i < sizeof checks / sizeof *checks && !fault; ++i) fault = checks[i](s);
     return fault;

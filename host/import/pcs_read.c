@@ -140,7 +140,7 @@ static const char *text_at(reading *d, uint32_t place)
 
 static void expect_zero(reading *d, uint32_t reserved)
 {
-    if (reserved) refuse(d, "a record with bits that version 1 does not have");
+    if (reserved) refuse(d, "a record with bits that this version does not have");
 }
 
 static void read_scene(reading *d)
@@ -161,7 +161,7 @@ static void read_scene(reading *d)
 static void set_counts(reading *d)
 {
     const struct { uint32_t *to; pcs_id id; } all[] = {
-        {&d->s->position_count, PCS_POSITIONS}, {&d->s->index_count, PCS_INDICES}, {&d->s->mover_count, PCS_MOVERS},
+        {&d->s->position_count, PCS_POSITIONS}, {&d->s->tangent_count, PCS_TANGENTS}, {&d->s->index_count, PCS_INDICES}, {&d->s->mover_count, PCS_MOVERS},
         {&d->s->wall_vertex_count, PCS_WALL_VERTICES}, {&d->s->plane_count, PCS_PLANES}, {&d->s->material_count, PCS_MATERIALS},
         {&d->s->object_count, PCS_OBJECTS}, {&d->s->place_count, PCS_PLACES}, {&d->s->solid_count, PCS_SOLIDS},
         {&d->s->solid_plane_count, PCS_SOLID_PLANES}, {&d->s->zone_count, PCS_ZONES}, {&d->s->hull_count, PCS_HULLS},
@@ -180,6 +180,7 @@ static void set_arrays(reading *d)
     s->positions = lies_at(d, PCS_POSITIONS);
     s->normals = lies_at(d, PCS_NORMALS);
     if (count_of(d, PCS_TEXCOORDS)) s->texcoords = lies_at(d, PCS_TEXCOORDS);
+    if (count_of(d, PCS_TANGENTS)) s->tangents = lies_at(d, PCS_TANGENTS);
     s->vertex_materials = lies_at(d, PCS_VERTEX_MATERIALS);
     s->indices = lies_at(d, PCS_INDICES);
     s->polygon_first_triangle = lies_at(d, PCS_POLYGON_FIRST_TRIANGLE);

@@ -60,7 +60,8 @@ static void frustum_destroy(cull_culler *c)
 static cull_result frustum_build(cull_culler *c, const cull_zone *zone, const cull_hierarchy *lent, cull_built *out)
 {
     (void)lent; // this culler selects; a hierarchy is for filters
-    const cull_result result = index_build(c->host, zone, c->faces, &c->index);
+    const index_source from = {zone, c->host->get_extension(c->host, zone, CULL_EXT_BLOB), c->faces};
+    const cull_result result = index_build(c->host, &from, &c->index);
     if (result != CULL_OK) return result;
     // Runs never touch, so at most every second item starts one.
     c->max_runs = zone->item_count / 2 + zone->item_count % 2 + WALK_SPARE_RUNS;
@@ -131,11 +132,18 @@ static size_t frustum_explain(cull_query *q, const cull_visit *visit, uint32_t i
     return explain_item(&q->culler->index, visit, item, text, size);
 }
 
+static uint64_t frustum_save(const cull_culler *c, void *blob, uint64_t size)
+{
+    return index_save(&c->index, blob, size);
+}
+
 static const void *frustum_get_extension(const cull_culler *c, const char *id)
 {
     static const cull_explain explain = {frustum_explain};
+    static const cull_bake bake = {frustum_save};
     (void)c;
-    return strcmp(id, CULL_EXT_EXPLAIN) == 0 ? &explain : NULL;
+    if (strcmp(id, CULL_EXT_EXPLAIN) == 0) return &explain;
+    return strcmp(id, CULL_EXT_BAKE) == 0 ? &bake : NULL;
 }
 
 // ---- What the library offers ----

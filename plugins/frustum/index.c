@@ -86,20 +86,22 @@ static void faces_fill(const cull_zone *zone, frustum_index *index)
     }
 }
 
-cull_result index_build(const cull_host *host, const cull_zone *zone, index_faces faces, frustum_index *out)
+cull_result index_build(const cull_host *host, const index_source *from, frustum_index *out)
 {
+    const cull_zone *zone = from->zone;
     frustum_index index = {.item_count = zone->item_count};
     levels_measure(&index);
     index.order_bytes = (size_t)(zone->item_count ? zone->item_count : 1) * sizeof *index.order;
     index.order = host->alloc(host, index.order_bytes, ALIGN);
     index.boxes = host->alloc(host, index.box_bytes, ALIGN);
     cull_result result = index.order && index.boxes ? CULL_OK : CULL_ERR_MEMORY;
-    if (result == CULL_OK && faces == INDEX_FACES && zone->walls && zone->item_count) {
+    if (result == CULL_OK && from->faces == INDEX_FACES && zone->walls && zone->item_count) {
         index.face_bytes = (size_t)blocks_for(zone->item_count) * INDEX_FACE_FLOATS * sizeof(float);
         index.faces = host->alloc(host, index.face_bytes, ALIGN);
         if (!index.faces) result = CULL_ERR_MEMORY;
     }
-    if (result == CULL_OK) result = index_order(host, zone, index.order);
+    if (result == CULL_OK && from->baked) result = index_load_order(host, from->baked, zone->item_count, index.order);
+    else if (result == CULL_OK) result = index_order(host, zone, index.order);
     if (result != CULL_OK) {
         index_free(host, &index);
         return result;

@@ -27,12 +27,24 @@ typedef struct frustum_index {
 
 typedef enum index_faces { INDEX_NO_FACES, INDEX_FACES } index_faces;
 
+typedef struct index_source {
+    const cull_zone *zone;
+    const cull_blob *baked; // by index_save; NULL: there is none. The index is the same bit for bit
+    index_faces faces;
+} index_source;
+
 // [build] On failure nothing is left behind. index_free also after a failed build; a zeroed index is fine.
-cull_result index_build(const cull_host *host, const cull_zone *zone, index_faces faces, frustum_index *out);
+cull_result index_build(const cull_host *host, const index_source *from, frustum_index *out);
 void index_free(const cull_host *host, frustum_index *index);
 
 // Writes a permutation of the items such that every 16^k places that start at a multiple of 16^k lie close together.
 cull_result index_order(const cull_host *host, const cull_zone *zone, uint32_t *order);
+
+// ---- Baked: the order alone, all that takes long to find; the boxes are the zone's own (index_bake.c) ----
+
+uint64_t index_save(const frustum_index *index, void *blob, uint64_t size); // as cull_bake.save
+// CULL_ERR_BLOB where it isn't, to the last bit, what index_save wrote for as many items.
+cull_result index_load_order(const cull_host *host, const cull_blob *baked, uint32_t item_count, uint32_t *order);
 
 // One block of faces for the items order[0 .. count-1], count <= 16.
 void index_faces_fill(const cull_zone *zone, const uint32_t *order, uint32_t count, float *faces);

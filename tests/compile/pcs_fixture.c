@@ -86,6 +86,7 @@ static void assert_arrays_equal(const scene *a, const scene *b)
     SAME(positions, a->position_count);
     SAME(normals, a->position_count);
     SAME(texcoords, 2 * (size_t)a->position_count);
+    SAME(tangents, a->tangent_count);
     SAME(vertex_materials, a->position_count);
     SAME(indices, a->index_count);
     SAME(polygon_first_triangle, (size_t)a->polygon_count + 1);

@@ -136,6 +136,7 @@ static void classes_and_textures_say_what_a_brush_is(void **state)
         {"worldspawn", "wall", 1, BRUSH_ADD, BRUSH_STRUCTURE},
         {"worldspawn", "sky1", 1, BRUSH_ADD, BRUSH_STRUCTURE},
         {"worldspawn", "*water0", 1, BRUSH_ADD, BRUSH_LIQUID},
+        {"worldspawn", "{grate", 1, BRUSH_ADD, BRUSH_ENTITY},
         {"worldspawn", "clip", 0, BRUSH_ADD, BRUSH_STRUCTURE},
         {"worldspawn", "SKIP", 0, BRUSH_ADD, BRUSH_STRUCTURE},
         {"worldspawn", "hint", 0, BRUSH_ADD, BRUSH_STRUCTURE},

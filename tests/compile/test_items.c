@@ -1,74 +1,12 @@
 // The last stage of the compiler: triangles, walls, zones by hulls, doors, and the checks that watch over it all.
 // SPDX-License-Identifier: MIT
-#include "input_fixture.h"
+#include "items_fixture.h"
 #include "tests/common/failing_allocator.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-typedef struct compiled { // of one map
-    compile_input *in;
-    compiled_zones *zones;
-    scene *scene;
-    compile_checks checks;
-    report_lines lines;
-} compiled;
-
-static void take_zones(compiled *c, compile_input *in, portal_choice portals)
-{
-    compile_mesh *mesh = NULL;
-    csg_counts counts;
-    *c = (compiled){.in = in};
-    report_lines_init(&c->lines);
-    assert_int_equal(compile_csg(in, &c->lines.report, allocator_heap(), &mesh, &counts), RESULT_OK);
-    assert_int_equal(compile_zones(in, mesh, portals, &c->lines.report, allocator_heap(), &c->zones), RESULT_OK);
-}
-
-static void take_items(compiled *c)
-{
-    assert_int_equal(compile_items(c->in, c->zones, &c->lines.report, allocator_heap(), &c->scene, &c->checks), RESULT_OK);
-}
-
-static void release(compiled *c)
-{
-    scene_free(c->scene, allocator_heap());
-    compiled_zones_free(c->zones);
-    compile_input_free(c->in);
-}
-
-// Two rooms of 8 m x 8 m x 4 m side by side, a door of 2 m x 3 m in the wall between them that opens upwards.
-static void write_two_rooms(map_writer *w)
-{
-    static const double boxes[][2][3] = {{{-16, -16, -16}, {544, 272, 0}}, {{-16, -16, 128}, {544, 272, 144}}, {{-16, -16, 0}, {544, 0, 128}},
-                                         {{-16, 256, 0}, {544, 272, 128}}, {{-16, 0, 0}, {0, 256, 128}},       {{528, 0, 0}, {544, 256, 128}},
-                                         {{256, 0, 0}, {272, 96, 128}},    {{256, 160, 0}, {272, 256, 128}},   {{256, 96, 96}, {272, 160, 128}}};
-    static const double door[2][3] = {{256, 96, 0}, {272, 160, 96}};
-    w->size = 0;
-    open_entity(w, "worldspawn");
-    for (size_t i = 0; i < sizeof boxes / sizeof *boxes; ++i) write_box(w, boxes[i][0], boxes[i][1], "wall");
-    close_entity(w);
-    open_entity(w, "func_door");
-    write_text(w, "\"angle\" \"-1\"\n");
-    write_box(w, door[0], door[1], "gate");
-    close_entity(w);
-    open_entity(w, "info_player_start");
-    write_text(w, "\"origin\" \"64 64 32\"\n");
-    close_entity(w);
-    open_entity(w, "light");
-    write_text(w, "\"origin\" \"400 64 64\"\n\"light\" \"160\"\n");
-    close_entity(w);
-}
-
-static void expect_sound(const compiled *c)
-{
-    assert_int_equal(c->checks.open_edges, 0);
-    assert_int_equal(c->checks.t_junctions_left, 0);
-    assert_int_equal(c->checks.degenerate_triangles, 0);
-    assert_int_equal(c->scene->item_count + c->scene->mover_count, c->checks.items);
-    assert_int_equal(c->scene->stray_items, 0);
-}
 
 static void two_rooms_become_two_zones_joined_by_the_doors_portal(void **state)
 {
@@ -113,6 +51,56 @@ static void walls_keep_their_exact_planes(void **state)
             assert_true(height == 0); // all of it is on the grid
         }
     }
+    release(&c);
+}
+
+static void starts_are_places_and_the_views_of_a_path(void **state)
+{
+    (void)state;
+    static map_writer w;
+    write_two_rooms(&w);
+    open_entity(&w, "info_player_deathmatch");
+    write_text(&w, "\"origin\" \"400 96 40\"\n\"angle\" \"90\"\n");
+    close_entity(&w);
+    compiled c;
+    take_zones(&c, input_of(w.text, NULL), PORTALS_DOORS);
+    take_items(&c);
+    const scene *s = c.scene;
+    assert_int_equal(s->path_count, 1);
+    assert_string_equal(s->paths[0].name, "starts");
+    assert_int_equal(s->paths[0].camera_count, 2);
+    static const double eyes[2][3] = {{2, 1 + 0.7, -2}, {12.5, 1.25 + 0.7, -3}}, ways[2][3] = {{1, 0, 0}, {0, 0, -1}};
+    for (int i = 0; i < 2; ++i) {
+        const camera *at = &s->cameras[s->paths[0].first_camera + (uint32_t)i];
+        assert_null(camera_fault(at));
+        for (int k = 0; k < 3; ++k) assert_true(at->eye[k] == eyes[i][k] && at->forward[k] == ways[i][k]);
+    }
+    assert_int_equal(s->places[0].kind, PLACE_PLAYER);
+    assert_int_equal(s->places[1].kind, PLACE_OTHER); // the light
+    assert_int_equal(s->places[2].kind, PLACE_PLAYER);
+    release(&c);
+}
+
+static void lights_have_their_place_reach_and_colour(void **state)
+{
+    (void)state;
+    static map_writer w;
+    write_two_rooms(&w);
+    open_entity(&w, "light_torch_small_walltorch");
+    write_text(&w, "\"origin\" \"64 96 64\"\n\"_color\" \"255 0 51\"\n\"targetname\" \"torch\"\n");
+    close_entity(&w);
+    compiled c;
+    take_zones(&c, input_of(w.text, NULL), PORTALS_DOORS);
+    take_items(&c);
+    const scene *s = c.scene;
+    assert_int_equal(s->light_count, 2);
+    assert_string_equal(s->lights[0].name, "light");
+    assert_true(s->lights[0].reach == 5 && s->lights[0].colour[0] == 1);
+    assert_true(s->lights[0].position[0] == 12.5 && s->lights[0].position[1] == 2 && s->lights[0].position[2] == -2);
+    assert_string_equal(s->lights[1].name, "torch");
+    assert_int_equal(s->lights[1].kind, LIGHT_POINT);
+    assert_true(s->lights[1].reach == 300.0 / 32);
+    assert_true(s->lights[1].colour[0] == 1 && s->lights[1].colour[1] == 0 && fabsf(s->lights[1].colour[2] - 0.2f) < 1e-6f);
     release(&c);
 }
 
@@ -245,6 +233,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(two_rooms_become_two_zones_joined_by_the_doors_portal),
         cmocka_unit_test(walls_keep_their_exact_planes),
+        cmocka_unit_test(starts_are_places_and_the_views_of_a_path),
+        cmocka_unit_test(lights_have_their_place_reach_and_colour),
         cmocka_unit_test(a_missing_polygon_is_seen_as_open_edges),
         cmocka_unit_test(a_t_junction_left_is_counted_and_opens_edges),
         cmocka_unit_test(real_maps_are_watertight_and_walls_lie_in_their_zones),

@@ -168,7 +168,7 @@ static const lie lies[] = {
     {PCS_MOVERS, AT(pcs_mover, 0, door), 0, 5, NUMBER, "whose door does not move it"},
     {PCS_MOVERS, AT(pcs_mover, 1, key_count), 0, 3, NUMBER, "a path that is not there"},
     {PCS_MOVERS, AT(pcs_mover, 0, key_count), 0, 1, NUMBER, "share a path"},
-    {PCS_MOVERS, AT(pcs_mover, 0, reserved), 0, 1, NUMBER, "bits that version 1"},
+    {PCS_MOVERS, AT(pcs_mover, 0, reserved), 0, 1, NUMBER, "bits that this version"},
     {PCS_MOVERS, AT(pcs_mover, 0, open_offset), 1e10, 0, DOUBLE, "opens beyond"},
     {PCS_KEYS, AT(scene_key, 1, offset), -1e300, 0, DOUBLE, "leads beyond"},
     {PCS_KEYS, AT(scene_key, 1, time_s), 0, 0, DOUBLE, "times do not rise"},
@@ -244,11 +244,11 @@ static void other_versions_and_other_files_are_told_apart(void **state)
     memcpy(f->copy, f->bytes, f->size);
     f->copy[offsetof(pcs_header, version)]++;
     sign(f->copy, f->size);
-    expect_refused(f->copy, f->size, "is of version 2, and version 1 is read here; compile it again");
+    expect_refused(f->copy, f->size, "is of version 3, and version 2 is read here; compile it again");
     memcpy(f->copy, f->bytes, f->size);
     f->copy[offsetof(pcs_header, section_count)]++;
     sign(f->copy, f->size);
-    expect_refused(f->copy, f->size, "a header that version 1 does not have");
+    expect_refused(f->copy, f->size, "a header that version 2 does not have");
     memcpy(f->copy, f->bytes, f->size);
     f->copy[0] = '{';
     expect_refused(f->copy, f->size, "is no compiled scene");

@@ -215,17 +215,42 @@ static void an_authored_portal_parts_two_rooms_and_one_beside_the_way_does_not(v
     finish(&s, expect(&s, PORTALS_AUTHORED, (expected){2, 2, 3, 1}));
 }
 
-static void a_lift_is_no_portal(void **state)
+// Up is nothing to the compiler: a map that lies on its side has the same portals.
+static void a_lift_parts_its_shaft_like_a_door_whichever_way_is_up(void **state)
 {
     (void)state;
-    zone_scene s; // a shaft whose floor is a door
+    for (int up = 0; up < 3; ++up) {
+        int shaft[3] = {64, 64, 64}, air[3] = {48, 48, 48}, lift_at[3] = {8, 8, 8}, lift[3] = {48, 48, 48};
+        shaft[up] = 256;
+        air[up] = 240;
+        lift_at[up] = 120;
+        lift[up] = 8;
+        zone_scene s;
+        zone_scene_begin(&s);
+        zone_scene_box(&s, BRUSH_ADD, 0, 0, 0, shaft[0], shaft[1], shaft[2]);
+        zone_scene_box(&s, BRUSH_SUBTRACT, 8, 8, 8, air[0], air[1], air[2]);
+        zone_scene_point(&s, "light", 32, 32, 32);
+        zone_scene_brushes_of(&s, "func_door", BRUSH_ENTITY);
+        zone_scene_box(&s, BRUSH_ADD, lift_at[0], lift_at[1], lift_at[2], lift[0], lift[1], lift[2]);
+        finish(&s, expect(&s, PORTALS_DOORS, (expected){2, 1, 3, 1}));
+    }
+}
+
+// None of its axes is the thin one: each is tried, and the one way through it that parts anything stays.
+static void a_door_as_thick_as_wide_parts_two_rooms_once(void **state)
+{
+    (void)state;
+    zone_scene s;
     zone_scene_begin(&s);
-    zone_scene_box(&s, BRUSH_ADD, 0, 0, 0, 64, 256, 64);
-    zone_scene_box(&s, BRUSH_SUBTRACT, 8, 8, 8, 48, 240, 48);
+    zone_scene_box(&s, BRUSH_ADD, 0, 0, 0, 256, 128, 128);
+    zone_scene_box(&s, BRUSH_SUBTRACT, 8, 8, 8, 104, 112, 112);
+    zone_scene_box(&s, BRUSH_SUBTRACT, 144, 8, 8, 104, 112, 112);
+    zone_scene_box(&s, BRUSH_SUBTRACT, 112, 48, 48, 32, 32, 32);
     zone_scene_point(&s, "light", 32, 32, 32);
+    zone_scene_point(&s, "light", 200, 32, 32);
     zone_scene_brushes_of(&s, "func_door", BRUSH_ENTITY);
-    zone_scene_box(&s, BRUSH_ADD, 8, 120, 8, 48, 8, 48);
-    finish(&s, expect(&s, PORTALS_DOORS, (expected){1, 1, 2, 0}));
+    zone_scene_box(&s, BRUSH_ADD, 112, 48, 48, 32, 32, 32);
+    finish(&s, expect(&s, PORTALS_DOORS, (expected){2, 2, 3, 1}));
 }
 
 static void a_leak_is_told_with_a_line_and_leaves_one_open_zone(void **state)
@@ -331,7 +356,8 @@ int main(void)
         cmocka_unit_test(an_edge_against_the_inside_of_a_face_seals),
         cmocka_unit_test(a_door_parts_two_rooms_and_its_floor),
         cmocka_unit_test(an_authored_portal_parts_two_rooms_and_one_beside_the_way_does_not),
-        cmocka_unit_test(a_lift_is_no_portal),
+        cmocka_unit_test(a_lift_parts_its_shaft_like_a_door_whichever_way_is_up),
+        cmocka_unit_test(a_door_as_thick_as_wide_parts_two_rooms_once),
         cmocka_unit_test(a_leak_is_told_with_a_line_and_leaves_one_open_zone),
         cmocka_unit_test(water_is_open_but_holds_back_the_void),
         cmocka_unit_test(a_zone_info_names_its_zone_and_gives_the_chain),

@@ -18,10 +18,19 @@ static int agrees(const compile_input *in)
     return same;
 }
 
+// What the published compiler's figures (column "reached" of the scenes' README) say, and where an exact one finds others:
+// lq_e0m8, 4 there: that takes brushes whose faces are all "hint" for solid. The one of (736 .. 1184, -384 .. -128,
+// -1600 .. -1216) plugs one way, those of (3840 .. 3968, -1344 .. -1280, -1472 .. -1344) and (3712 .. 3776, -1856 .. -1728,
+// -1472 .. -1344) together another; with the map's six made walls 4 come out here too.
+// lq_e3m4, 3 there: without 19 boxes of 96 units that hold monsters or where a teleporter ends; the first is
+// (-992 .. -896, -656 .. -560, 1024 .. 1120) with monster_demon1 at (-944, -616, 1048), on all sides a brush of a func_group
+// 16 thick that meets its neighbours along an edge alone, which seals. Boxes of the same use are counted in e1m4 and e3m5.
+typedef struct real_zones { uint32_t reached, sealed; } real_zones;
+static const real_zones expected_zones[8] = {{1, 2}, {1, 1}, {12, 15}, {5, 7}, {1, 0}, {1, 2}, {2, 5}, {22, 43}};
+
 static void real_maps_have_the_zones_of_the_oracle(void **state)
 {
     (void)state;
-    static const uint32_t reached[8] = {1, 1, 12, 5, 1, 0, 2, 22}; // lqdm7 leaks through a gap of less than a step between its brushes
     int absent = 0;
     for (int i = 0; i < 8; ++i) {
         compile_input *in = real_map(real_maps[i], 256);
@@ -32,12 +41,12 @@ static void real_maps_have_the_zones_of_the_oracle(void **state)
         oracle_bsp(in, &o);
         print_message("%s: %u zones, %u of them reached, leak %u; oracle %u, %u, %u\n", real_maps[i], z->zone_count, zones_reached(z), z->leak, o.regions,
                       o.reached, o.leak);
-        if (i != 5) assert_int_equal(zones_reached(z), reached[i]);
-        if (i != 4 && i != 5) { // these have liquids against the void, which the oracle doesn't know
-            assert_int_equal(z->leak, o.leak);
-            assert_int_equal(z->zone_count, o.regions);
-            assert_int_equal(zones_reached(z), o.reached);
-        }
+        assert_int_equal(zones_reached(z), expected_zones[i].reached);
+        assert_int_equal(z->zones_sealed, expected_zones[i].sealed);
+        assert_int_equal(z->leak, 0);
+        assert_int_equal(o.leak, 0);
+        assert_int_equal(z->zone_count, o.regions);
+        assert_int_equal(zones_reached(z), o.reached);
         assert_int_equal(open_edges(in, z), 0);
         compiled_zones_free(z);
         compile_input_free(in);

@@ -60,7 +60,7 @@ static void an_unknown_key_is_named_with_what_was_meant(void **state)
 {
     (void)state;
     expect(HEAD "\"boxs\": []}", "t.json:2:1: error: /boxs: this key is unknown here; did you mean 'boxes'? Known: portcullis, name, include, meshes, boxes, "
-                                 "walls, zones, portals, doors, movers, lights, paths, $schema");
+                                 "walls, zones, portals, doors, movers, lights, paths, brushes, zone_info, starts, $schema");
     expect(HEAD "\"boxes\": [{\"min\": [0,0,0],\n \"max\": [1,1,1],\n \"texture\": 1}]}",
            "t.json:4:2: error: /boxes/0/texture: this key is unknown here; known: min, max, material, side, omit, name");
 }

@@ -1,7 +1,7 @@
 // The eye as two floats keeps 48 bits: gcc 12's straight-line vectorizer once made the lower half 0. Needs no GL.
 // SPDX-License-Identifier: MIT
 #include "fixture.h"
-#include "gl.h"
+#include "host/render/gl.h"
 
 #include <math.h>
 

@@ -23,6 +23,20 @@ for target in $targets; do
     for file in "$root"/../shared/scenes/*/*."$kind" "$root"/scenes/*."$kind"; do # the heads of real files; libFuzzer cuts and joins them
         if [ -f "$file" ]; then head -c 6000 "$file" >"$corpus/$(basename "$file")"; fi
     done
+    case $kind in
+    brushes) cp "$root/scenes/pillars.json" "$corpus/" ;;
+    input | compile) # whole small maps: cut ones are refused before the compiler sees them
+        for file in "$root"/../shared/scenes/*/*.map; do
+            [ -f "$file" ] || continue
+            awk '{ print; size += length + 1 } /^ *}/ && size > 4000 { print "}"; exit }' "$file" >"$corpus/$(basename "$file")"
+        done
+        number=0 # the boxes of the source
+        sed -n 's/^ *"\(\\1[^"]*\)".*/\1/p' "$root/tests/compile/fuzz_$kind.c" | while read -r boxes; do
+            number=$((number + 1))
+            printf '%b' "$(printf '%s' "$boxes" | sed 's/\\/\\0/g')" >"$corpus/boxes$number"
+        done
+        ;;
+    esac
     if "$build/bin/$target" -max_total_time="$seconds" -max_len=8192 -timeout=10 -rss_limit_mb=2048 -artifact_prefix="$build/$kind-" "$corpus" \
         >"$build/$kind.log" 2>&1; then
         printf '%s: %s\n' "$target" "$(tail -n 1 "$build/$kind.log")"
