@@ -52,8 +52,6 @@ typedef struct compilation {
     meter meter;
     allocator memory;
     report report;
-    char *text;
-    size_t size;
     compile_input *input;
     compile_watch watch;
     compiled_zones *zones;
@@ -122,7 +120,7 @@ static result stages_of_surface(compilation *c)
         compile_mesh_free(mesh);
         return c->dumped;
     }
-    const result zoned = compile_zones(c->input, mesh, c->asked->portals, &c->report, &c->memory, &c->zones);
+    const result zoned = compile_zones_with(c->input, mesh, &c->asked->zones, &c->report, &c->memory, &c->zones);
     return zoned == RESULT_OK ? c->dumped : zoned;
 }
 
@@ -176,7 +174,7 @@ static result run_stages(compilation *c)
 
 static void print_report(const compilation *c)
 {
-    const compile_facts facts = {c->input, c->zones, &c->counts, &c->checks, c->stage_ms, c->meter.peak, c->baked.bytes, c->baked.count};
+    const compile_facts facts = {c->input, c->zones, &c->counts, &c->checks, c->scene, c->stage_ms, c->meter.peak, c->baked.bytes, c->baked.count};
     compile_report_print(&facts, c->asked->json ? REPORT_JSON : REPORT_TEXT);
 }
 
@@ -196,6 +194,5 @@ int command_compile(int argc, char **argv)
     scene_free(c.scene, &c.memory);
     compiled_zones_free(c.zones);
     compile_input_free(c.input);
-    if (c.text) memory_free(&c.memory, c.text, c.size + 1, 1);
     return app_exit_code(done);
 }

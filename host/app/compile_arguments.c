@@ -14,7 +14,9 @@
 
 static const struct argp_option options[] = {
     {"output", 'o', "FILE.pcs", 0, "where to; needed", 0},
-    {"portals", 'p', "none|authored|doors", 0, "what parts zones: nothing, zone_portal brushes, doors as well (default doors)", 0},
+    {"portals", 'p', "none|authored|doors|auto", 0, "what parts zones: nothing, zone_portal brushes, doors as well, narrow places as well (default doors)", 0},
+    {"rooms", 'n', "N", 0, "with auto: no more rooms than these, instead of by how open they are", 0},
+    {"max-portals", 'm', "N", 0, "with auto: no more portals between rooms than these (default 100)", 0},
     {"grid", 'g', "G", 0, "grid steps a unit, a whole number (default 256)", 0},
     {"prt", 'r', "FILE", 0, "the portals too, as map editors read them", 0},
     {"pts", 't', "FILE", 0, "the leak's line too, as map editors read it; without a leak an old one is removed", 0},
@@ -27,8 +29,8 @@ static const struct argp_option options[] = {
 
 static int parse_portals(const char *text, portal_choice *out)
 {
-    static const char *const names[] = {"doors", "none", "authored"}; // as portal_choice
-    for (int i = 0; i < 3; ++i) {
+    static const char *const names[] = {"doors", "none", "authored", "auto"}; // as portal_choice
+    for (int i = 0; i < 4; ++i) {
         if (strcmp(text, names[i]) != 0) continue;
         *out = (portal_choice)i;
         return 1;
@@ -72,7 +74,11 @@ static error_t parse(int key, char *text, struct argp_state *state)
         compile_stage_names((compile_stage)STAGES_DUMPED, names);
         if (!parse_dump(text, a)) argp_error(state, "--dump takes one of %s, then =FILE or nothing", names);
     } else if (key == 'p') {
-        if (!parse_portals(text, &a->portals)) argp_error(state, "--portals takes none, authored or doors, not '%s'", text);
+        if (!parse_portals(text, &a->zones.portals)) argp_error(state, "--portals takes none, authored, doors or auto, not '%s'", text);
+    } else if (key == 'n') {
+        if (!parse_count(text, 1, 1000000, &a->zones.rooms.rooms)) argp_error(state, "--rooms takes a whole number from 1 to 1000000, not '%s'", text);
+    } else if (key == 'm') {
+        if (!parse_count(text, 0, 1000000, &a->zones.rooms.portals)) argp_error(state, "--max-portals takes a whole number up to 1000000, not '%s'", text);
     } else if (key == 'g') {
         if (!parse_count(text, 1, 65536, &grid)) argp_error(state, "--grid takes a whole number from 1 to 65536, not '%s'", text);
         else a->options.grid = grid;
@@ -87,7 +93,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
 void compile_arguments_parse(int argc, char **argv, compile_arguments *out)
 {
     static const struct argp parser = {options, parse, "INPUT", "Compiles brushes to zones joined by portals: a scene file.", NULL, NULL, NULL};
-    *out = (compile_arguments){.portals = PORTALS_DOORS};
+    *out = (compile_arguments){.zones = zone_options_of(PORTALS_DOORS)};
     if (argp_parse(&parser, argc, argv, 0, NULL, out) != 0) exit(EXIT_USAGE);
 }
 

@@ -9,7 +9,7 @@ typedef struct compile_arguments {
     const char *input, *out, *prt, *pts, *bake; // all but the first two may be NULL
     const char *dump_files[STAGES_DUMPED];      // by stage; NULL: no dump; "": to stdout
     input_options options;
-    portal_choice portals;
+    zone_options zones;
     int json;
 } compile_arguments;
 

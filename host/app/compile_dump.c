@@ -84,7 +84,7 @@ static void dump_input(FILE *to, const compile_input *in)
         const compile_entity *entity = &in->entities[e];
         fprintf(to, "entity %u line %u %s brushes %u\n", e, entity->line, entity->class_name, entity->brush_count);
     }
-    static const char *const kinds[] = {"plane", "point", "corner"}; // as weld_kind
+    static const char *const kinds[] = {"plane", "point", "corner", "turn"}; // as weld_kind
     for (uint32_t i = 0; i < in->weld_moves; ++i) {
         const weld_change *c = &in->changes[i];
         fprintf(to, "weld %s brush %u line %u move %.9g from ", kinds[c->kind], c->brush, c->line, c->move);

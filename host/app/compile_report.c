@@ -8,16 +8,24 @@
 
 typedef struct fact { const char *name; json_int_t count; } fact;
 
+// As `info` counts them: without movers.
+static json_int_t triangles_of(const scene *s)
+{
+    json_int_t count = 0;
+    for (uint32_t i = 0; i < s->item_count; ++i) count += s->items[i].index_count / 3;
+    return count;
+}
+
 static json_t *report_of(const compile_facts *f)
 {
     const compiled_zones *z = f->zones;
     const fact facts[] = {{"zones", (json_int_t)z->zone_count - z->zones_sealed}, {"zones_sealed", z->zones_sealed}, {"shells", z->shells},
-                          {"portals", z->portal_count}, {"items", f->checks->items}, {"polygons_in", f->counts->polygons_in},
-                          {"polygons_csg", f->counts->polygons_csg}, {"polygons_merged", f->counts->polygons_merged}, {"triangles", f->checks->triangles},
+                          {"portals", f->scene->portal_count}, {"items", f->scene->item_count}, {"polygons_in", f->counts->polygons_in},
+                          {"polygons_csg", f->counts->polygons_csg}, {"polygons_merged", f->counts->polygons_merged}, {"triangles", triangles_of(f->scene)},
                           {"t_junctions_inserted", z->t_junctions_inserted}, {"t_junctions_left", f->checks->t_junctions_left},
                           {"open_edges", f->checks->open_edges}, {"degenerate_triangles", f->checks->degenerate_triangles}, {"leak", z->leak},
-                          {"weld_moves", f->input->weld_moves}, {"bakes", f->bakes}, {"bake_bytes", (json_int_t)f->bake_bytes},
-                          {"peak_bytes", (json_int_t)f->peak_bytes}};
+                          {"weld_moves", f->input->weld_moves}, {"brushes_dropped", f->input->brushes_dropped}, {"bakes", f->bakes},
+                          {"bake_bytes", (json_int_t)f->bake_bytes}, {"peak_bytes", (json_int_t)f->peak_bytes}};
     json_t *out = json_object(), *stages = json_array();
     double sum = 0;
     char names[128];

@@ -10,6 +10,7 @@ typedef struct compile_facts {
     const compiled_zones *zones;
     const csg_counts *counts;
     const compile_checks *checks;
+    const scene *scene;     // as written
     const double *stage_ms; // STAGE_COUNT of them
     size_t peak_bytes;
     uint64_t bake_bytes;

@@ -56,13 +56,14 @@ typedef struct compile_entity {
 
 typedef struct compile_material { const char *name; uint32_t flags; } compile_material; // MATERIAL_*
 
-typedef enum weld_kind { WELD_PLANE, WELD_POINT, WELD_CORNER } weld_kind;
+typedef enum weld_kind { WELD_PLANE, WELD_POINT, WELD_CORNER, WELD_TURN } weld_kind;
 typedef struct weld_change { // one face of one brush got another plane
     weld_kind kind;          // PLANE: shared with a near plane of another brush; POINT: two corners of the brush became one;
                              // CORNER: laid through a corner of another brush that it missed by a rounding
+                             // TURN: the map was turned as a whole and rounded, see turned_frame.h; this is the plane before that
     uint32_t brush, line;    // line: of the face
     plane_ref from, to;
-    double move;             // map units: the farthest that a corner of the brush went
+    double move;             // map units: the farthest that a corner of the brush went; TURN: that one of the face's written points
 } weld_change;
 
 typedef struct compile_view compile_view; // of a stage that ended, see stages.h
@@ -81,7 +82,7 @@ typedef struct compile_input {
     uint32_t brush_count, face_count, entity_count, material_count;
     double steps_per_metre;        // grid * units per metre (32 for a map)
     uint32_t weld_moves;           // planes and points that the weld changed
-    double max_move;               // the farthest, in map units
+    double max_move;               // the farthest, in map units; see weld_change.move
     weld_change *changes;          // weld_moves of them
     uint32_t points_rounded;       // face points that are not on the grid as written
     uint32_t brushes_dropped;      // empty ones and those of tool textures alone
@@ -142,11 +143,20 @@ void compile_mesh_free(compile_mesh *m); // NULL is fine
 
 // ---- Portals and zones (portals.c, zones.c, islands.c): by edge tracing ----
 
-typedef enum portal_choice { PORTALS_DOORS, PORTALS_NONE, PORTALS_AUTHORED } portal_choice;
+typedef enum portal_choice { PORTALS_DOORS, PORTALS_NONE, PORTALS_AUTHORED, PORTALS_AUTO } portal_choice; // AUTO: doors, and rooms made
+// When automatic rooms are apart enough.
+typedef struct room_limits {
+    double openness;  // rooms less open to each other than this stay apart; see rooms_merge.c
+    uint32_t rooms;   // instead: no more than these; 0: openness decides
+    uint32_t portals; // no more than these between rooms, coplanar neighbours counted as one
+} room_limits;
+typedef struct zone_options { portal_choice portals; room_limits rooms; } zone_options; // rooms: of PORTALS_AUTO
+zone_options zone_options_of(portal_choice choice); // openness 0.5, 100 portals
+
 typedef struct compiled_portal {
     plane_ref plane;                     // front: zones[0]
     uint32_t first_vertex, vertex_count; // in zones' mesh.loop
-    uint32_t zones[2], entity;           // entity that made it
+    uint32_t zones[2], entity;           // entity that made it; COMPILE_NOTHING: between automatic rooms
 } compiled_portal;
 
 typedef struct compiled_zone {
@@ -167,6 +177,7 @@ typedef struct compiled_zones {
     uint32_t leak_line_count;
 } compiled_zones;
 
+result compile_zones_with(const compile_input *in, compile_mesh *mesh, const zone_options *options, report *r, const allocator *memory, compiled_zones **out); // takes the mesh
 result compile_zones(const compile_input *in, compile_mesh *mesh, portal_choice choice, report *r, const allocator *memory, compiled_zones **out); // takes the mesh
 void compiled_zones_free(compiled_zones *z); // NULL is fine
 

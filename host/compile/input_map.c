@@ -4,6 +4,7 @@
 // Invariant: a map point (x, y, z) is (x, z, -y) in the scene, a rotation, so fronts stay fronts and no step is lost.
 #include "input.h"
 #include "input_grid.h"
+#include "turned_frame.h"
 
 #include "../import/map_entity.h"
 #include "../import/map_texture.h"
@@ -20,6 +21,9 @@ typedef struct map_input {
     map_entity entity;
     input_draft draft;
     buffer faces; // compile_face: of one brush
+    buffer turns; // weld_change: of one brush, its number not yet known
+    turned_frame frame;
+    frame_verdict has_frame; // the map was turned as a whole: its planes are those of the frame
 } map_input;
 
 static void name_place(const map_input *m, size_t brush, char where[WHERE_BYTES])
@@ -28,6 +32,13 @@ static void name_place(const map_input *m, size_t brush, char where[WHERE_BYTES]
 }
 
 // ---- Faces ----
+
+static void scene_point(const int64_t steps[3], int32_t out[3])
+{
+    out[0] = (int32_t)steps[0];
+    out[1] = (int32_t)steps[2];
+    out[2] = (int32_t)-steps[1];
+}
 
 static result grid_point(map_input *m, const map_face *face, int point, const char *where, int32_t out[3])
 {
@@ -42,9 +53,7 @@ static result grid_point(map_input *m, const map_face *face, int point, const ch
                                 (double)CULL_GRID_MOST / m->draft.grid);
     }
     m->draft.in->points_rounded += rounded != 0;
-    out[0] = (int32_t)steps[0];
-    out[1] = (int32_t)steps[2];
-    out[2] = (int32_t)-steps[1];
+    scene_point(steps, out);
     return RESULT_OK;
 }
 
@@ -60,6 +69,20 @@ static void texture_rows(const map_face *face, const cull_wide_plane *outward, d
         rows[i][2] = -a[1] * (UNITS_PER_METRE / TEXELS) + 0.0;
         rows[i][3] = map.shift[i] / TEXELS;
     }
+}
+
+// The plane that was meant before the map was turned and its points rounded.
+static result turn_face(map_input *m, const int32_t p[3][3], compile_face *face)
+{
+    cull_wide_plane meant;
+    double move;
+    if (m->has_frame != FRAME_FOUND || !turned_frame_plane(&m->frame, p[1], p[0], p[2], &meant, &move)) return RESULT_OK;
+    const plane_ref to = plane_table_add(m->draft.in->planes, &meant);
+    const weld_change change = {WELD_TURN, 0, face->line, face->plane, to, move / m->draft.grid};
+    if (to == PLANE_NONE || (to != face->plane && !buffer_append(&m->turns, &change, 1))) return report_no_memory(m->reader.report, m->reader.path);
+    face->plane = to;
+    face->is_rounded = 0;
+    return RESULT_OK;
 }
 
 static result take_face(map_input *m, const map_face *face, const char *where, compile_face *out)
@@ -80,7 +103,7 @@ static result take_face(map_input *m, const map_face *face, const char *where, c
     const texture_kind kind = texture_kind_of(face->texture);
     if (kind != TEXTURE_TOOL) out->material = input_draft_material(&m->draft, face->texture.text, face->texture.length, texture_material_flags(kind));
     if (out->plane == PLANE_NONE || (kind != TEXTURE_TOOL && out->material == UINT32_MAX)) return report_no_memory(m->reader.report, m->reader.path);
-    return RESULT_OK;
+    return turn_face(m, (const int32_t(*)[3])p, out);
 }
 
 // ---- Brushes ----
@@ -119,6 +142,24 @@ static brush_look look_of(const map_face *faces, size_t count)
     return look;
 }
 
+// Of the faces that the brush has kept.
+static result list_turns(map_input *m)
+{
+    input_draft *d = &m->draft;
+    const uint32_t number = (uint32_t)d->brushes.count - 1;
+    const compile_brush *b = (const compile_brush *)d->brushes.items + number;
+    const compile_face *faces = (const compile_face *)d->faces.items + b->first_face;
+    weld_change *turns = m->turns.items;
+    for (size_t i = 0, f = 0; i < m->turns.count; ++i) { // both in the order of the file
+        while (f < b->face_count && faces[f].line < turns[i].line) f++;
+        if (f == b->face_count || faces[f].line != turns[i].line) continue;
+        turns[i].brush = number;
+        if (!buffer_append(&d->changes, &turns[i], 1)) return report_no_memory(d->report, d->path);
+        d->in->max_move = fmax(d->in->max_move, turns[i].move);
+    }
+    return RESULT_OK;
+}
+
 static result take_brush(map_input *m, size_t number, const entity_use *use, uint32_t entity)
 {
     const map_brush *brush = (const map_brush *)m->entity.brushes.items + number;
@@ -130,7 +171,7 @@ static result take_brush(map_input *m, size_t number, const entity_use *use, uin
     }
     char where[WHERE_BYTES];
     name_place(m, number, where);
-    m->faces.count = 0;
+    m->faces.count = m->turns.count = 0;
     compile_face *faces = buffer_push(&m->faces, brush->face_count);
     if (!faces) return report_no_memory(m->reader.report, m->reader.path);
     for (size_t i = 0; i < brush->face_count; ++i) {
@@ -141,7 +182,8 @@ static result take_brush(map_input *m, size_t number, const entity_use *use, uin
     if (made.role == BRUSH_STRUCTURE && made.kind == BRUSH_ADD && look.liquid) made.role = BRUSH_LIQUID;
     if (made.role == BRUSH_STRUCTURE && made.kind == BRUSH_ADD && look.fence) made.role = BRUSH_ENTITY; // what lies behind shows through it
     brush_verdict verdict;
-    return input_draft_brush(&m->draft, &made, faces, (uint32_t)brush->face_count, where, (uint32_t)brush->line, &verdict);
+    const result done = input_draft_brush(&m->draft, &made, faces, (uint32_t)brush->face_count, where, (uint32_t)brush->line, &verdict);
+    return done == RESULT_OK && verdict == BRUSH_TAKEN ? list_turns(m) : done;
 }
 
 // ---- Entities ----
@@ -213,6 +255,63 @@ static result read_map(map_input *m, compile_input **out)
     return input_draft_finish(&m->draft, out);
 }
 
+// ---- Turned maps ----
+
+// Points in the text with a decimal point, of all: without any there is nothing to find, and no need to read the text twice.
+static int has_decimals(const char *at, const char *end)
+{
+    size_t points = 0, decimals = 0;
+    while ((at = memchr(at, '(', (size_t)(end - at))) != NULL) {
+        const char *close = memchr(at, ')', (size_t)(end - at));
+        if (!close) break;
+        points++;
+        decimals += memchr(at, '.', (size_t)(close - at)) != NULL;
+        at = close;
+    }
+    return decimals > points / 2;
+}
+
+// What can't be read or is no point of the grid is left to the second reading, which says so.
+static result gather_points(map_input *m, buffer *points)
+{
+    report quiet = {0};
+    map_reader reader = m->reader;
+    reader.report = &quiet;
+    for (;;) {
+        map_more more;
+        const result done = map_reader_next(&reader, &m->entity, &more);
+        if (done == RESULT_NO_MEMORY) return report_no_memory(m->reader.report, m->reader.path);
+        if (done != RESULT_OK || more == MAP_END) return RESULT_OK;
+        const map_face *faces = m->entity.faces.items;
+        for (size_t f = 0; f < m->entity.faces.count; ++f) {
+            int32_t p[3][3];
+            int is_good = 1;
+            for (int i = 0; i < 3 && is_good; ++i) {
+                int64_t steps[3];
+                for (int k = 0; k < 3; ++k) {
+                    grid_round(faces[f].decimals[i][k].text, faces[f].decimals[i][k].length, m->draft.grid, &steps[k]);
+                    is_good &= steps[k] <= CULL_GRID_MOST && steps[k] >= -CULL_GRID_MOST;
+                }
+                if (is_good) scene_point(steps, p[i]);
+            }
+            if (is_good && !buffer_append(points, p, 3)) return report_no_memory(m->reader.report, m->reader.path);
+        }
+    }
+}
+
+static result find_frame(map_input *m)
+{
+    if (!has_decimals(m->reader.at, m->reader.end)) return RESULT_OK;
+    buffer points = buffer_make(m->faces.memory, sizeof(int32_t[3]));
+    result done = gather_points(m, &points);
+    if (done == RESULT_OK) {
+        done = turned_frame_find((const int32_t(*)[3])points.items, points.count, m->draft.grid, m->faces.memory, &m->frame, &m->has_frame);
+        if (done == RESULT_NO_MEMORY) report_no_memory(m->reader.report, m->reader.path);
+    }
+    buffer_free(&points);
+    return done;
+}
+
 static size_t byte_order_mark(const char *text, size_t size) // UTF-8's
 {
     return size >= 3 && memcmp(text, "\xef\xbb\xbf", 3) == 0 ? 3 : 0;
@@ -223,11 +322,15 @@ result compile_input_map(const char *path, const char *text, size_t size, const 
     const size_t mark = byte_order_mark(text, size);
     map_input m = {.reader = {.path = path, .at = text + mark, .end = text + size, .line = 1, .report = r},
                    .entity = map_entity_make(memory),
-                   .faces = buffer_make(memory, sizeof(compile_face))};
+                   .faces = buffer_make(memory, sizeof(compile_face)),
+                   .turns = buffer_make(memory, sizeof(weld_change)),
+                   .has_frame = FRAME_NONE};
     result done = input_draft_open(path, o, memory, r, &m.draft);
+    if (done == RESULT_OK) done = find_frame(&m);
     if (done == RESULT_OK) done = read_map(&m, out);
     input_draft_close(&m.draft);
     buffer_free(&m.faces);
+    buffer_free(&m.turns);
     map_entity_free(&m.entity);
     return done;
 }

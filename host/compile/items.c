@@ -63,7 +63,10 @@ typedef struct structure {
     uint32_t *first_vertex; // by polygon: in the builder; VERTEX_NONE: no item
     uint32_t *order;        // polygons by entity
     uint8_t *is_item;       // by polygon
-    buffer loop, triangles; // uint32_t: places in one loop
+    buffer loop, triangles; // uint32_t: places in one loop, then vertices in the builder
+    buffer walls;           // wall_triangle: of all polygons, in `order`
+    buffer loops;           // uint32_t: true corners of all polygons, in the builder
+    uint32_t *first_loop, *first_wall; // by polygon: of its corners in `loops`, and one more; of its triangles in `walls`, when sorted
     buffer all;             // uint32_t: of the mesh, three a triangle, liquids left out
     uint32_t triangle_count, object, entity;
 } structure;
@@ -120,13 +123,11 @@ static result all_vertices(structure *s)
     return done;
 }
 
-static result keep_for_checks(structure *s, const compile_polygon *p)
+static result keep_for_checks(structure *s, const compile_polygon *p, const wall_triangle *walls, uint32_t count)
 {
     if (s->job->in->brushes[p->brush].role == BRUSH_LIQUID) return RESULT_OK;
-    const uint32_t *places = s->triangles.items;
-    uint32_t *to = buffer_push(&s->all, s->triangles.count);
-    if (!to) return RESULT_NO_MEMORY;
-    for (size_t i = 0; i < s->triangles.count; ++i) to[i] = s->job->zones->mesh->loop[p->first_vertex + places[i]];
+    for (uint32_t i = 0; i < count; ++i)
+        if (!buffer_append(&s->all, walls[i].vertices, 3)) return RESULT_NO_MEMORY;
     return RESULT_OK;
 }
 
@@ -139,26 +140,75 @@ static result object_of(structure *s, const compile_polygon *p)
     return scene_builder_object(s->job->builder, name, (size_t)item_object_name(s->job, entity, name, sizeof name), &s->object);
 }
 
+// Its corners in the builder to `loops`, its triangles to `walls`.
+static result triangulate(structure *s, uint32_t polygon)
+{
+    const compile_mesh *m = s->job->zones->mesh;
+    const compile_polygon *p = &m->polygons[polygon];
+    const uint32_t first = s->first_vertex[polygon];
+    s->first_loop[2 * (size_t)polygon] = s->first_loop[2 * (size_t)polygon + 1] = (uint32_t)s->loops.count;
+    if (first == VERTEX_NONE) return RESULT_OK;
+    const result done = loop_triangulate(&s->triangulator, p, &s->loop, &s->triangles);
+    if (done != RESULT_OK || s->triangles.count == 0 || s->loop.count < 3) return done;
+    uint32_t *loop = buffer_push(&s->loops, s->loop.count);
+    wall_triangle *walls = buffer_push(&s->walls, s->triangles.count / 3);
+    if (!loop || !walls) return RESULT_NO_MEMORY;
+    const uint32_t *corners = s->loop.items, *places = s->triangles.items;
+    for (size_t i = 0; i < s->loop.count; ++i) loop[i] = first + corners[i];
+    for (size_t i = 0; i < s->triangles.count; ++i) {
+        walls[i / 3].vertices[i % 3] = m->loop[p->first_vertex + places[i]];
+        walls[i / 3].corners[i % 3] = first + places[i];
+        walls[i / 3].polygon = polygon;
+    }
+    s->first_loop[2 * (size_t)polygon + 1] = (uint32_t)s->loops.count;
+    return RESULT_OK;
+}
+
+// By counting: stable. Those that are gone are left out.
+static result sort_walls(structure *s)
+{
+    const uint32_t count = s->job->zones->mesh->polygon_count;
+    buffer sorted = buffer_make(s->job->memory, sizeof(wall_triangle));
+    const wall_triangle *from = s->walls.items;
+    wall_triangle *to = buffer_push(&sorted, s->walls.count + 1);
+    if (!to) return RESULT_NO_MEMORY;
+    uint32_t *first = s->first_wall;
+    memset(first, 0, ((size_t)count + 2) * sizeof *first);
+    for (size_t i = 0; i < s->walls.count; ++i)
+        if (from[i].polygon != SCENE_NONE) first[from[i].polygon + 2]++;
+    for (uint32_t p = 2; p < count + 2; ++p) first[p] += first[p - 1];
+    for (size_t i = 0; i < s->walls.count; ++i)
+        if (from[i].polygon != SCENE_NONE) to[first[from[i].polygon + 1]++] = from[i];
+    buffer_free(&s->walls);
+    s->walls = sorted;
+    return RESULT_OK;
+}
+
+static result take_triangles(structure *s, const wall_triangle *walls, uint32_t count)
+{
+    s->triangles.count = 0;
+    for (uint32_t i = 0; i < count; ++i)
+        if (!buffer_append(&s->triangles, walls[i].corners, 3)) return RESULT_NO_MEMORY;
+    return RESULT_OK;
+}
+
 static result add_item(structure *s, uint32_t polygon)
 {
     item_job *j = s->job;
     const compile_polygon *p = &j->zones->mesh->polygons[polygon];
-    result done = loop_triangulate(&s->triangulator, p, &s->loop, &s->triangles);
-    if (done != RESULT_OK || s->triangles.count == 0 || s->loop.count < 3) return done;
-    done = keep_for_checks(s, p);
+    const uint32_t triangle_count = s->first_wall[polygon + 1] - s->first_wall[polygon], *loop = s->first_loop + 2 * (size_t)polygon;
+    const wall_triangle *walls = (const wall_triangle *)s->walls.items + s->first_wall[polygon];
+    if (triangle_count == 0) return RESULT_OK;
+    result done = take_triangles(s, walls, triangle_count);
+    if (done == RESULT_OK) done = keep_for_checks(s, p, walls, triangle_count);
     if (done == RESULT_OK) done = object_of(s, p);
     if (done != RESULT_OK) return done;
-    uint32_t *const runs[] = {s->loop.items, s->triangles.items};
-    const size_t counts[] = {s->loop.count, s->triangles.count};
-    for (int r = 0; r < 2; ++r)
-        for (size_t i = 0; i < counts[r]; ++i) runs[r][i] += s->first_vertex[polygon];
-    const uint32_t triangle_count = (uint32_t)(s->triangles.count / 3);
     builder_item item = {.indices = s->triangles.items,
                          .polygon_triangles = &triangle_count,
-                         .loop = s->loop.items,
+                         .loop = (const uint32_t *)s->loops.items + loop[0],
                          .index_count = (uint32_t)s->triangles.count,
                          .polygon_count = 1,
-                         .loop_count = (uint32_t)s->loop.count,
+                         .loop_count = loop[1] - loop[0],
                          .material = j->material_of[p->material],
                          .object = s->object,
                          .flags = CULL_ITEM_WALL};
@@ -178,11 +228,15 @@ static result structure_open(structure *s, item_job *j)
     s->loop = buffer_make(j->memory, sizeof(uint32_t));
     s->triangles = buffer_make(j->memory, sizeof(uint32_t));
     s->all = buffer_make(j->memory, sizeof(uint32_t));
+    s->walls = buffer_make(j->memory, sizeof(wall_triangle));
+    s->loops = buffer_make(j->memory, sizeof(uint32_t));
+    s->first_loop = memory_alloc(j->memory, count, 2 * sizeof *s->first_loop);
+    s->first_wall = memory_alloc(j->memory, count + 2, sizeof *s->first_wall);
     s->triangulator = loop_triangulator_make(j, &s->rounded);
     s->first_vertex = memory_alloc(j->memory, count, sizeof *s->first_vertex);
     s->order = memory_alloc(j->memory, count, sizeof *s->order);
     s->is_item = memory_alloc_zeroed(j->memory, count, 1);
-    return s->first_vertex && s->order && s->is_item ? sort_polygons(s) : RESULT_NO_MEMORY;
+    return s->first_vertex && s->order && s->is_item && s->first_loop && s->first_wall ? sort_polygons(s) : RESULT_NO_MEMORY;
 }
 
 static void structure_close(structure *s)
@@ -191,6 +245,10 @@ static void structure_close(structure *s)
     buffer_free(&s->loop);
     buffer_free(&s->triangles);
     buffer_free(&s->all);
+    buffer_free(&s->walls);
+    buffer_free(&s->loops);
+    memory_free(s->job->memory, s->first_loop, count, 2 * sizeof *s->first_loop);
+    memory_free(s->job->memory, s->first_wall, count + 2, sizeof *s->first_wall);
     loop_triangulator_free(&s->triangulator);
     wall_lists_free(&s->lists);
     rounded_mesh_free(&s->rounded);
@@ -204,8 +262,10 @@ static result structure_items(structure *s)
     const compile_mesh *m = s->job->zones->mesh;
     result done = rounded_mesh_make(s->job, &s->rounded);
     if (done == RESULT_OK) done = wall_lists_make(s->job, &s->rounded, &s->lists);
-    for (uint32_t i = 0; i < m->polygon_count && done == RESULT_OK; ++i)
-        if (s->first_vertex[s->order[i]] != VERTEX_NONE) done = add_item(s, s->order[i]);
+    for (uint32_t i = 0; i < m->polygon_count && done == RESULT_OK; ++i) done = triangulate(s, s->order[i]);
+    if (done == RESULT_OK) done = items_mend_flat(s->job, &s->rounded, s->first_vertex, &s->walls, s->is_item);
+    if (done == RESULT_OK) done = sort_walls(s);
+    for (uint32_t i = 0; i < m->polygon_count && done == RESULT_OK; ++i) done = add_item(s, s->order[i]);
     return done;
 }
 

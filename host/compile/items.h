@@ -43,6 +43,8 @@ result items_starts(item_job *j);
 void items_normal_maps(item_job *j);
 // Zones by hulls, portals with their doors; behind items_entities (items_zones.c).
 result items_zones(item_job *j);
+// Portals between automatic rooms, coplanar neighbours joined (items_joined.c).
+result items_joined_portals(const item_job *j);
 
 // ---- The doors that close a portal (items_doors.c) ----
 
@@ -101,6 +103,15 @@ loop_triangulator loop_triangulator_make(const item_job *j, const rounded_mesh *
 void loop_triangulator_free(loop_triangulator *t);
 // Places in the polygon's loop: its true corners, in order, to `loop`; three a triangle to `triangles`. Both are emptied before.
 result loop_triangulate(loop_triangulator *t, const compile_polygon *p, buffer *loop, buffer *triangles);
+
+// ---- Triangles that are flat when rounded (items_flat.c) ----
+
+typedef struct wall_triangle {
+    uint32_t vertices[3], corners[3]; // of the mesh; in the builder
+    uint32_t polygon;                 // SCENE_NONE: gone
+} wall_triangle;
+// Of all walls. is_closed, by polygon: 1 where a triangle went to another polygon, which then closes it.
+result items_mend_flat(item_job *j, const rounded_mesh *rounded, const uint32_t *first_vertex, buffer *walls, uint8_t *is_closed);
 
 // ---- The checks (items_check.c): of the mesh and the scene, by other means than made them ----
 

@@ -208,10 +208,11 @@ result portal_pieces_make(const item_job *j, const compiled_portal *portal, port
     out->pieces.count = out->edges.count = 0;
     cover c = {.job = j, .out = out, .rest = buffer_make(j->memory, sizeof(plane_polygon)), .next = buffer_make(j->memory, sizeof(plane_polygon)),
                .signs = buffer_make(j->memory, sizeof(int8_t))};
-    const uint32_t authored = j->in->portal_doors ? j->in->portal_doors[portal->entity] : SCENE_NONE;
+    const int is_made = portal->entity == COMPILE_NOTHING;
+    const uint32_t authored = j->in->portal_doors && !is_made ? j->in->portal_doors[portal->entity] : SCENE_NONE;
     result done = take_portal(&c, portal);
     if (done == RESULT_OK && authored != SCENE_NONE) ((portal_piece_of_door *)out->pieces.items)[0].door = authored;
-    else if (done == RESULT_OK && j->door_of[portal->entity] != SCENE_NONE) done = cover_all(&c, portal->entity);
+    else if (done == RESULT_OK && !is_made && j->door_of[portal->entity] != SCENE_NONE) done = cover_all(&c, portal->entity);
     if (done == RESULT_OK) choose_pieces(&c);
     buffer *const all[] = {&c.rest, &c.next, &c.signs};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) buffer_free(all[i]);

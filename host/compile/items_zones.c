@@ -276,8 +276,8 @@ typedef struct named_portal { const char *kind; uint32_t number; const compiled_
 static void name_portal(const item_job *j, const named_portal *of, char name[PORTAL_NAME_BYTES])
 {
     const compiled_portal *portals = j->zones->portals;
-    const compile_entity *e = &j->in->entities[of->portal->entity];
-    const int is_named = e->name && strcmp(e->class_name, "zone_portal") == 0; // then the number is the portal's
+    const compile_entity *e = of->portal->entity == COMPILE_NOTHING ? NULL : &j->in->entities[of->portal->entity];
+    const int is_named = e && e->name && strcmp(e->class_name, "zone_portal") == 0; // then the number is the portal's
     const int is_first = is_named && (of->number == 0 || portals[of->number - 1].entity != of->portal->entity);
     if (!is_named) snprintf(name, PORTAL_NAME_BYTES, "%s %u", of->kind, of->number);
     else if (is_first) snprintf(name, PORTAL_NAME_BYTES, "%s", e->name);
@@ -334,7 +334,8 @@ static result add_portals(const item_job *j)
     portal_pieces pieces = {buffer_make(j->memory, sizeof(portal_piece_of_door)), buffer_make(j->memory, sizeof(polygon_edge))};
     result done = RESULT_OK;
     for (uint32_t i = 0; i < j->zones->portal_count && done == RESULT_OK; ++i)
-        done = add_portal(j, &(named_portal){"portal", i, &j->zones->portals[i]}, &pieces);
+        if (j->zones->portals[i].entity != COMPILE_NOTHING) done = add_portal(j, &(named_portal){"portal", i, &j->zones->portals[i]}, &pieces);
+    if (done == RESULT_OK) done = items_joined_portals(j);
     for (uint32_t i = 0; i < j->zones->mesh->polygon_count && done == RESULT_OK; ++i) done = add_seal(j, i, &pieces);
     buffer_free(&pieces.pieces);
     buffer_free(&pieces.edges);

@@ -14,6 +14,7 @@ typedef struct leak_walk {
     uint32_t *first, *pair_of;         // pairs of each face
     uint32_t *from, *across;           // by face: the face before it + 1 (0: not seen), the pair between + 1
     buffer order;                      // faces, as seen
+    size_t jumped;                     // of them: their rays meet nothing new any more
     double out[3];                     // past the end of the last face
 } leak_walk;
 
@@ -87,8 +88,8 @@ static result walk_shell(leak_walk *w, size_t at, uint32_t *end)
 static result jump(leak_walk *w, int *found, uint32_t *end)
 {
     *found = 0;
-    for (size_t i = 0; i < w->order.count && !*found && *end == RAY_NO_FACE; ++i) {
-        const uint32_t face = ((uint32_t *)w->order.items)[i];
+    for (; w->jumped < w->order.count && !*found && *end == RAY_NO_FACE; ++w->jumped) {
+        const uint32_t face = ((uint32_t *)w->order.items)[w->jumped];
         ray_end done = RAY_UNCLEAR;
         for (uint32_t attempt = 0; attempt < 4 && done != RAY_DONE; ++attempt) {
             const result r = ray_from_face(&w->t->rays, face, attempt, &done);

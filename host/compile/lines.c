@@ -22,7 +22,6 @@ typedef struct line_build {
     buffer direction_slots, line_slots; // uint32_t + 1
     buffer next_line, cells;            // by line: uint32_t + 1; its moment's hash
     buffer pairs;                       // line_pair, by direction of two planes
-    buffer touches;
 } line_build;
 
 typedef struct line_pair { plane_ref a, b; uint32_t direction; } line_pair;
@@ -291,6 +290,7 @@ static void gather_ends(const line_set *l, const surface_line *line, line_end *o
 static result rank_vertices(line_set *l, surface_line *line, const line_end *ends, size_t count)
 {
     line->first_vertex = (uint32_t)l->vertices.count;
+    line->vertex_count = 0;
     for (size_t i = 0; i < count; ++i) {
         if (i == 0 || ends[i].vertex != ends[i - 1].vertex) {
             if (!buffer_append(&l->vertices, &ends[i].vertex, 1)) return RESULT_NO_MEMORY;
@@ -303,30 +303,36 @@ static result rank_vertices(line_set *l, surface_line *line, const line_end *end
     return RESULT_OK;
 }
 
-// Touches come by line, ascending.
-static result sort_lines(line_set *l, const buffer *touches)
+static result sort_line(line_set *l, surface_line *line, const line_touch *touch, size_t touch_count, buffer *ends)
+{
+    const size_t own = 2 * (size_t)line->edge_count, count = own + touch_count;
+    ends->count = 0;
+    line_end *e = buffer_push(ends, 2 * count);
+    if (!e) return RESULT_NO_MEMORY;
+    gather_ends(l, line, e);
+    for (size_t k = 0; k < touch_count; ++k) e[own + k] = (line_end){touch[k].vertex, UINT32_MAX, place_along(l, line, touch[k].vertex)};
+    merge_sort(l, line, e, count, e + count);
+    return rank_vertices(l, line, e, count);
+}
+
+static result sort_lines(line_set *l)
 {
     buffer ends = buffer_make(l->memory, sizeof(line_end));
-    const line_touch *touch = touches->items, *touch_end = touch ? touch + touches->count : touch;
     result r = RESULT_OK;
-    for (uint32_t i = 0; i < l->lines.count && r == RESULT_OK; ++i) {
-        surface_line *line = (surface_line *)l->lines.items + i;
-        const line_touch *first = touch;
-        while (touch < touch_end && touch->line == i) ++touch;
-        const size_t count = 2 * (size_t)line->edge_count + (size_t)(touch - first);
-        ends.count = 0;
-        line_end *e = buffer_push(&ends, 2 * count);
-        if (!e) {
-            r = RESULT_NO_MEMORY;
-            break;
-        }
-        gather_ends(l, line, e);
-        for (size_t k = 0; first + k < touch; ++k) {
-            const line_end made = {first[k].vertex, UINT32_MAX, place_along(l, line, first[k].vertex)};
-            e[2 * (size_t)line->edge_count + k] = made;
-        }
-        merge_sort(l, line, e, count, e + count);
-        r = rank_vertices(l, line, e, count);
+    for (uint32_t i = 0; i < l->lines.count && r == RESULT_OK; ++i) r = sort_line(l, (surface_line *)l->lines.items + i, NULL, 0, &ends);
+    buffer_free(&ends);
+    return r;
+}
+
+// Touches come by line. A line's vertices stand anew at the end, with those that touch it.
+static result sort_touched(line_set *l, const buffer *touches)
+{
+    buffer ends = buffer_make(l->memory, sizeof(line_end));
+    const line_touch *t = touches->items;
+    result r = RESULT_OK;
+    for (size_t i = 0, end; i < touches->count && r == RESULT_OK; i = end) {
+        for (end = i + 1; end < touches->count && t[end].line == t[i].line;) ++end;
+        r = sort_line(l, (surface_line *)l->lines.items + t[i].line, t + i, end - i, &ends);
     }
     buffer_free(&ends);
     return r;
@@ -372,8 +378,7 @@ result line_set_make(const surface *s, const allocator *memory, line_set *out)
                     .direction_slots = buffer_make(memory, sizeof(uint32_t)),
                     .line_slots = buffer_make(memory, sizeof(uint32_t)),
                     .next_line = buffer_make(memory, sizeof(uint32_t)),
-                    .pairs = buffer_make(memory, sizeof(line_pair)),
-                    .touches = buffer_make(memory, sizeof(line_touch))};
+                    .pairs = buffer_make(memory, sizeof(line_pair))};
     const size_t slots = slots_for(2 * s->corners.count);
     l.edge_of = memory_alloc(memory, l.corner_count, sizeof(uint32_t));
     result r = l.edge_of ? RESULT_OK : RESULT_NO_MEMORY;
@@ -382,17 +387,23 @@ result line_set_make(const surface *s, const allocator *memory, line_set *out)
     if (r == RESULT_OK) r = zeroed(&b.pairs, slots);
     if (r == RESULT_OK) r = find_lines(&b);
     if (r == RESULT_OK) r = group_edges(&l);
-    if (r == RESULT_OK) r = line_touches(&l, &b.touches);
-    l.touching = (uint32_t)b.touches.count;
-    if (r == RESULT_OK) r = sort_touches(&l, &b.touches);
-    if (r == RESULT_OK) r = sort_lines(&l, &b.touches);
+    if (r == RESULT_OK) r = sort_lines(&l);
     buffer_free(&b.direction_slots);
     buffer_free(&b.line_slots);
     buffer_free(&b.next_line);
     buffer_free(&b.pairs);
-    buffer_free(&b.touches);
     if (r == RESULT_OK) *out = l;
     else line_set_free(&l);
+    return r;
+}
+
+result line_set_add_touches(line_set *l)
+{
+    buffer touches = buffer_make(l->memory, sizeof(line_touch));
+    result r = line_touches(l, &touches);
+    if (r == RESULT_OK) r = sort_touches(l, &touches);
+    if (r == RESULT_OK) r = sort_touched(l, &touches);
+    buffer_free(&touches);
     return r;
 }
 

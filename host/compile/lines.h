@@ -34,16 +34,18 @@ typedef struct line_set {
     buffer vertices;   // uint32_t, by line
     uint32_t *edge_of; // of each corner of a polygon in use: its place in edges
     size_t corner_count;
-    uint32_t touching; // vertices on a line where no edge of that line ends
 } line_set;
 
 // The surface must not change while the lines are in use.
 result line_set_make(const surface *s, const allocator *memory, line_set *out);
 void line_set_free(line_set *l); // zeroed is fine
+// Until then a line has only the vertices where edges of its own end, which is enough to join faces round it: now those that
+// touch it too. Places in line_set.vertices and ranks change.
+result line_set_add_touches(line_set *l);
 // Along the line: sign of (place of vertex a - place of vertex b).
 int line_order(const line_set *l, const surface_line *line, uint32_t a, uint32_t b);
 
-// Between make and sort, in lines_touch.c: (line, vertex) of vertices that lie inside an edge.
+// In lines_touch.c: (line, vertex) of vertices that lie inside an edge.
 typedef struct line_touch { uint32_t line, vertex; } line_touch;
 result line_touches(const line_set *l, buffer *out);
 

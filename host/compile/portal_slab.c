@@ -13,6 +13,8 @@ enum { WAYS_MOST = 32 };
 #define AXIS_MARGIN_UNITS 2.0 // along axes that no face has: over sqrt(3), so that they cut no corner off a turned box
 #define UNITS_A_METRE 32.0
 #define SAME_THICKNESS 1e-6   // steps: no choice by rounding between two equal axes
+#define WHOLE_MOST 4e15       // doubles below it are good to half a whole number
+#define MARGIN_MOST 4e18      // and below it fit int64, with room for a way's end
 
 typedef struct way { // a direction through the group, and how far it reaches that way: low <= n . p <= high
     int64_t normal[3];
@@ -23,11 +25,13 @@ typedef struct way { // a direction through the group, and how far it reaches th
 
 typedef struct slab_group {
     uint32_t entity, is_door, way_count, thin;
+    double lost; // steps: the thinnest way between faces that whole numbers don't hold
     way ways[WAYS_MOST];
 } slab_group;
 
 typedef struct slab_build {
     const compile_input *in;
+    report *report;
     slab_set *out;
     brush_shape shape;
     plane_ref cube[6];
@@ -75,13 +79,14 @@ static void reach(way *w, const double p[3])
 }
 
 // Whole numbers that hold the reach; where it ends on a whole number but for rounding, that number.
-// 0: there is nothing. Axes come first, and doubles hold their ends.
-static int round_ways(slab_group *g)
+// 0: there is nothing. Axes come first, and doubles hold their ends. A way that a margin takes out of 62 bits bounds nothing.
+static int round_ways(const slab_build *b, slab_group *g)
 {
     for (uint32_t i = 0; i < g->way_count; ++i) {
         way *w = &g->ways[i];
-        if (!(fabs(w->low_at) < 4e15 && fabs(w->high_at) < 4e15)) {
+        if (!(fabs(w->low_at) < WHOLE_MOST && fabs(w->high_at) < WHOLE_MOST && AXIS_MARGIN_UNITS * b->unit * w->length < MARGIN_MOST)) {
             if (i < 3) return 0;
+            if (w->is_face) g->lost = fmin(g->lost, (w->high_at - w->low_at) / w->length);
             *w = g->ways[--g->way_count];
             --i;
             continue;
@@ -124,7 +129,7 @@ static result reach_brushes(slab_build *b, slab_group *g, uint32_t first, uint32
     for (int pass = 0; pass < 2; ++pass)
         for (uint32_t i = first; i < first + count; ++i) {
             shape_fault fault;
-                    const result r = cut_brush(b, i, &fault);
+            const result r = cut_brush(b, i, &fault);
             if (r != RESULT_OK) return r;
             if (fault != SHAPE_SOUND) continue;
             const shape_face *faces = b->shape.faces.items;
@@ -137,13 +142,27 @@ static result reach_brushes(slab_build *b, slab_group *g, uint32_t first, uint32
     return RESULT_OK;
 }
 
+static void tell_none(const slab_build *b, uint32_t entity)
+{
+    const compile_entity *e = &b->in->entities[entity];
+    report_warning(b->report, b->in->path, e->line,
+                   "this %s is too slanted or too far out to be halved exactly: it makes no portal; straighten it or take a coarser grid", e->class_name);
+}
+
+
+// Several ways as thin: which of them parts anything, the zones will tell. None, where a thinner one is lost: it was meant.
 static result add_group(slab_build *b, uint32_t entity, uint32_t is_door, uint32_t first, uint32_t count)
 {
-    slab_group g = {.entity = entity, .is_door = is_door};
+    slab_group g = {.entity = entity, .is_door = is_door, .lost = INFINITY};
     const result r = reach_brushes(b, &g, first, count);
-    if (r != RESULT_OK || !round_ways(&g)) return r; // out of range or nothing: no portal
-    for (g.thin = 0; g.thin < g.way_count; ++g.thin) // several ways as thin: which of them parts anything, the zones will tell
-        if (is_thinnest(&g, g.thin) && !buffer_append(&b->groups, &g, 1)) return RESULT_NO_MEMORY;
+    if (r != RESULT_OK) return r;
+    const size_t before = b->groups.count;
+    const uint32_t ways = round_ways(b, &g) ? g.way_count : 0;
+    for (g.thin = 0; g.thin < ways; ++g.thin) {
+        if (!is_thinnest(&g, g.thin) || thickness(&g.ways[g.thin]) > g.lost + SAME_THICKNESS) continue;
+        if (!buffer_append(&b->groups, &g, 1)) return RESULT_NO_MEMORY;
+    }
+    if (b->groups.count == before) tell_none(b, entity);
     return RESULT_OK;
 }
 
@@ -165,7 +184,7 @@ static result add_groups(slab_build *b, portal_choice choice)
         const compile_entity *entity = &in->entities[e];
         for (uint32_t i = 0; i < entity->brush_count && r == RESULT_OK; ++i)
             if (in->brushes[entity->first_brush + i].role == BRUSH_PORTAL) r = add_group(b, e, 0, entity->first_brush + i, 1);
-        if (r != RESULT_OK || choice != PORTALS_DOORS || strncmp(entity->class_name, "func_door", 9) != 0) continue;
+        if (r != RESULT_OK || (choice != PORTALS_DOORS && choice != PORTALS_AUTO) || strncmp(entity->class_name, "func_door", 9) != 0) continue;
         if (makes_something(in, entity)) r = add_group(b, e, 1, entity->first_brush, entity->brush_count);
     }
     return r;
@@ -253,7 +272,10 @@ static result add_slab(slab_build *b, const slab_group *g)
     const way *thin = &g->ways[g->thin];
     int main_axis = 0;
     for (int k = 0; k < 3; ++k) {
-        if (llabs(thin->normal[k]) > NORMAL_MOST) return RESULT_OK;
+        if (llabs(thin->normal[k]) > NORMAL_MOST) {
+            tell_none(b, g->entity);
+            return RESULT_OK;
+        }
         if (llabs(thin->normal[k]) > llabs(thin->normal[main_axis])) main_axis = k;
     }
     cull_wide_plane middle = {{2 * thin->normal[0], 2 * thin->normal[1], 2 * thin->normal[2]}, cull_wide_from(-(thin->low + thin->high))};
@@ -274,6 +296,7 @@ result slab_set_make(const compile_input *in, portal_choice choice, report *r, c
     *out = set;
     if (choice == PORTALS_NONE) return RESULT_OK;
     slab_build b = {.in = in,
+                    .report = r,
                     .out = out,
                     .shape = brush_shape_make(memory),
                     .planes = buffer_make(memory, sizeof(plane_ref)),
@@ -286,7 +309,6 @@ result slab_set_make(const compile_input *in, portal_choice choice, report *r, c
     buffer_free(&b.planes);
     buffer_free(&b.groups);
     if (made != RESULT_OK) slab_set_free(out);
-    (void)r;
     return made;
 }
 

@@ -98,17 +98,18 @@ static int boxes_touch(const surface_polygon *a, const surface_polygon *b)
 }
 
 // What earlier pieces in the same plane leave of the parts; parts and rest change places.
-static result leave_earlier(portal_build *b, size_t earlier)
+static result leave_earlier(portal_build *b, plane_ref plane, size_t earlier)
 {
     surface *s = &b->out->s;
-    for (size_t i = 0; i < earlier; ++i) {
+    for (size_t i = 0; i < earlier && b->parts.count; ++i) {
         const uint32_t other = ((portal_piece *)b->out->pieces.items)[i].polygon;
+        if (surface_polygon_at(s, other)->plane >> 1 != plane >> 1) continue;
         b->rest.count = 0;
         for (size_t k = 0; k < b->parts.count; ++k) {
             const uint32_t part = ((uint32_t *)b->parts.items)[k];
             const surface_polygon *p = surface_polygon_at(s, part), *o = surface_polygon_at(s, other);
             result r = RESULT_OK;
-            if (p->plane >> 1 == o->plane >> 1 && boxes_touch(p, o)) r = portal_without(s, part, other, &b->rest);
+            if (boxes_touch(p, o)) r = portal_without(s, part, other, &b->rest);
             else if (!buffer_append(&b->rest, &part, 1)) r = RESULT_NO_MEMORY;
             if (r != RESULT_OK) return r;
         }
@@ -129,7 +130,7 @@ static result add_slab(portal_build *b, const portal_slab *slab, const plane_ref
     r = find_brushes(b, whole);
     b->parts.count = 0;
     if (r == RESULT_OK) r = portal_air(&b->out->s, b->in, whole, b->near_by.items, (uint32_t)b->near_by.count, &b->parts);
-    if (r == RESULT_OK) r = leave_earlier(b, b->out->pieces.count);
+    if (r == RESULT_OK) r = leave_earlier(b, slab->plane, b->out->pieces.count);
     for (size_t i = 0; i < b->parts.count && r == RESULT_OK; ++i) {
         const portal_piece piece = {.polygon = ((uint32_t *)b->parts.items)[i], .entity = slab->entity, .is_door = slab->is_door};
         if (!buffer_append(&b->out->pieces, &piece, 1)) r = RESULT_NO_MEMORY;

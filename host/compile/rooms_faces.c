@@ -138,6 +138,7 @@ static result walls_count(facing *f, const cell_input *from)
     result r = RESULT_OK;
     for (uint32_t i = 0; i < from->wall_count && r == RESULT_OK; ++i) {
         const size_t edges = f->p->edges.count;
+        if (from->walls[i].behind != CELL_SOLID) continue; // a portal is no wall
         f->arrived[0].count = 0;
         r = sink(f, from->walls[i].shape, 0, &f->arrived[0]); // the input's edges stand first in p->edges
         for (size_t k = 0; k < f->arrived[0].count && r == RESULT_OK; ++k) {

@@ -42,7 +42,7 @@ void zone_place_point(const compile_input *in, const compile_entity *e, int32_t 
 result zone_places_name(const compile_input *in, const zone_places *p, compiled_zones *z); // fills z->zones
 
 // t_junctions.c: the surface back into z->mesh, every vertex of a line in all edges that run over it; polygon_zone, portals.
-// is_open: all polygons into zone 0, no portals.
+// ZONES_OPEN: all polygons into zone 0, no portals.
 typedef enum zone_shape { ZONES_CLOSED, ZONES_OPEN } zone_shape;
 result zone_emit(const zone_trace *t, ray_space *rays, const zone_places *p, zone_shape shape, compiled_zones *z);
 

@@ -1,11 +1,13 @@
 // Zones of the mesh: portals tried, those that separate nothing left out, regions of air made zones, or one open zone of
 // a map that leaks.
 // SPDX-License-Identifier: MIT
+#include "rooms.h"
 #include "stages.h"
 #include "zone_trace.h"
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 #define UNITS_A_METRE 32.0
 
@@ -16,35 +18,89 @@ typedef struct zone_build {
     portal_set portals;
     zone_trace trace;
     zone_places places;
+    const zone_options *options;
     uint8_t *seals; // by polygon of the mesh; NULL: liquids bound nothing
 } zone_build;
 
 // ---- Portals that are none ----
 
-// A lift counts like any door: what is up can't be asked here, for a map that lies on its side has to have the same zones.
-static int separates(const zone_trace *t, uint32_t polygon)
+typedef struct sheet { uint32_t piece, sides[2]; } sheet; // a polygon of a portal; sides: regions, the void is the last
+
+static uint32_t region_or_void(const zone_trace *t, uint32_t face)
 {
-    const uint32_t front = zone_trace_region(t, 2 * polygon), back = zone_trace_region(t, 2 * polygon + 1);
-    return front != back && front != REGION_VOID && back != REGION_VOID;
+    const uint32_t region = zone_trace_region(t, face);
+    return region == REGION_VOID ? t->regions.region_count : region;
 }
 
-// A piece stays when any part of it separates; the count of those that don't.
-static uint32_t reject_portals(zone_build *b)
+static uint32_t merged_into(uint32_t *parent, uint32_t region)
 {
-    portal_piece *pieces = b->portals.pieces.items;
-    uint32_t rejected = 0;
-    for (size_t i = 0; i < b->portals.pieces.count; ++i)
-        if (pieces[i].is_rejected == 0) pieces[i].is_rejected = 2; // until shown otherwise
+    while (parent[region] != region) region = parent[region] = parent[parent[region]];
+    return region;
+}
+
+// A lift counts like any door: what is up can't be asked here, for a map that lies on its side has to have the same zones.
+static int separates(uint32_t *parent, uint32_t all_void, const sheet *s)
+{
+    const uint32_t front = merged_into(parent, s->sides[0]), back = merged_into(parent, s->sides[1]);
+    return front != back && front != all_void && back != all_void;
+}
+
+// Regions on the two sides of what was just rejected are one; the void stays the void.
+static void merge_sides(uint32_t *parent, const sheet *s)
+{
+    const uint32_t front = merged_into(parent, s->sides[0]), back = merged_into(parent, s->sides[1]);
+    parent[front < back ? front : back] = front < back ? back : front;
+}
+
+static result gather_sheets(const zone_build *b, buffer *out)
+{
+    const portal_piece *pieces = b->portals.pieces.items;
     for (uint32_t i = 0; i < surface_polygon_count(&b->trace.s); ++i) {
         const surface_polygon *p = surface_polygon_at(&b->trace.s, i);
-        if (p->kind == SURFACE_PORTAL && pieces[p->source].is_rejected == 2 && separates(&b->trace, i))
-            pieces[p->source].is_rejected = 0;
+        if (p->kind != SURFACE_PORTAL || pieces[p->source].is_rejected) continue;
+        const sheet made = {p->source, {region_or_void(&b->trace, 2 * i), region_or_void(&b->trace, 2 * i + 1)}};
+        if (!buffer_append(out, &made, 1)) return RESULT_NO_MEMORY;
     }
+    return RESULT_OK;
+}
+
+// A piece stays when any part of it separates; the count of those that don't. `stays`: by piece.
+static uint32_t reject_round(zone_build *b, const buffer *sheets, uint32_t *parent, uint8_t *stays)
+{
+    const sheet *all = sheets->items;
+    const uint32_t all_void = b->trace.regions.region_count;
+    portal_piece *pieces = b->portals.pieces.items;
+    uint32_t rejected = 0;
+    memset(stays, 0, b->portals.pieces.count);
+    for (size_t i = 0; i < sheets->count; ++i)
+        if (separates(parent, all_void, &all[i])) stays[all[i].piece] = 1;
+    for (size_t i = 0; i < sheets->count; ++i)
+        if (!stays[all[i].piece] && !pieces[all[i].piece].is_rejected) merge_sides(parent, &all[i]);
     for (size_t i = 0; i < b->portals.pieces.count; ++i) {
-        rejected += pieces[i].is_rejected == 2;
-        pieces[i].is_rejected = pieces[i].is_rejected != 0;
+        if (stays[i] || pieces[i].is_rejected) continue;
+        pieces[i].is_rejected = 1;
+        ++rejected;
     }
     return rejected;
+}
+
+// Where a piece goes, air becomes one that others may have parted: a row of doors into the void goes one by one, but
+// without a tracing for each.
+static result reject_portals(zone_build *b, uint32_t *rejected)
+{
+    const uint32_t regions = b->trace.regions.region_count + 1;
+    const size_t pieces = b->portals.pieces.count;
+    buffer sheets = buffer_make(b->memory, sizeof(sheet));
+    uint32_t *parent = memory_alloc(b->memory, regions, sizeof(*parent));
+    uint8_t *stays = memory_alloc(b->memory, pieces, 1);
+    result r = parent && stays ? gather_sheets(b, &sheets) : RESULT_NO_MEMORY;
+    *rejected = 0;
+    for (uint32_t i = 0; i < regions && r == RESULT_OK; ++i) parent[i] = i;
+    for (uint32_t more = 1; more && r == RESULT_OK;) *rejected += more = reject_round(b, &sheets, parent, stays);
+    memory_free(b->memory, parent, regions, sizeof(*parent));
+    memory_free(b->memory, stays, pieces, 1);
+    buffer_free(&sheets);
+    return r;
 }
 
 static result trace_again(zone_build *b, const compile_mesh *mesh)
@@ -54,11 +110,15 @@ static result trace_again(zone_build *b, const compile_mesh *mesh)
     return zone_trace_make(&from, b->memory, &b->trace);
 }
 
-// Ends: each round but the last rejects a piece.
+// The last tracing has no piece that separates nothing: rejected ones cut nothing either.
 static result trace_until_settled(zone_build *b, const compile_mesh *mesh)
 {
-    result r = trace_again(b, mesh);
-    while (r == RESULT_OK && reject_portals(b)) r = trace_again(b, mesh);
+    uint32_t rejected = 1;
+    result r = RESULT_OK;
+    while (r == RESULT_OK && rejected) {
+        r = trace_again(b, mesh);
+        if (r == RESULT_OK) r = reject_portals(b, &rejected);
+    }
     return r;
 }
 
@@ -174,9 +234,17 @@ static void check_closed(zone_build *b)
                        b->trace.shells.open_segments, b->trace.regions.unclear);
 }
 
+static result part_rooms(zone_build *b, const compile_mesh *mesh)
+{
+    const result r = rooms_portals(b->in, &b->trace, &b->options->rooms, &b->portals);
+    return r == RESULT_OK ? settle(b, mesh) : r;
+}
+
 static result run(zone_build *b, compiled_zones *z)
 {
     result r = settle_sealed(b, z->mesh);
+    if (r != RESULT_OK) return r;
+    if (b->options->portals == PORTALS_AUTO && b->places.leaking == ZONE_NONE) r = part_rooms(b, z->mesh);
     if (r != RESULT_OK) return r;
     check_closed(b);
     z->shells = b->trace.shells.shell_count;
@@ -191,14 +259,15 @@ static result run(zone_build *b, compiled_zones *z)
     for (uint32_t i = 0; i < z->zone_count; ++i) z->zones[i] = (compiled_zone){0};
     r = zone_places_name(b->in, &b->places, z);
     if (r == RESULT_OK) compile_tell(&(compile_view){STAGE_ZONES, b->in, .trace = &b->trace, .places = &b->places, .zones = z});
+    if (r == RESULT_OK) r = line_set_add_touches(&b->trace.lines);
     if (r == RESULT_OK) r = zone_emit(&b->trace, &b->trace.rays, &b->places, z->leak ? ZONES_OPEN : ZONES_CLOSED, z);
     if (r == RESULT_OK) compile_tell(&(compile_view){STAGE_T_JUNCTIONS, b->in, .zones = z});
     return r;
 }
 
-result compile_zones(const compile_input *in, compile_mesh *mesh, portal_choice choice, report *r, const allocator *memory, compiled_zones **out)
+result compile_zones_with(const compile_input *in, compile_mesh *mesh, const zone_options *options, report *r, const allocator *memory, compiled_zones **out)
 {
-    zone_build b = {.in = in, .memory = memory, .report = r};
+    zone_build b = {.options = options, .in = in, .memory = memory, .report = r};
     compiled_zones *z = memory_alloc_zeroed(memory, 1, sizeof(*z));
     if (!z) {
         compile_mesh_free(mesh);
@@ -207,7 +276,7 @@ result compile_zones(const compile_input *in, compile_mesh *mesh, portal_choice 
     z->memory = arena_make(memory);
     z->mesh = mesh;
     const uint32_t polygon_count = mesh->polygon_count;
-    result made = portal_set_make(in, choice, r, memory, &b.portals);
+    result made = portal_set_make(in, options->portals, r, memory, &b.portals);
     if (made == RESULT_OK) {
         compile_tell(&(compile_view){STAGE_PORTALS, in, .portals = &b.portals});
         made = run(&b, z);
@@ -222,6 +291,17 @@ result compile_zones(const compile_input *in, compile_mesh *mesh, portal_choice 
     }
     compiled_zones_free(z);
     return made == RESULT_NO_MEMORY ? report_no_memory(r, in->path) : made;
+}
+
+zone_options zone_options_of(portal_choice choice)
+{
+    return (zone_options){choice, {.openness = 0.5, .portals = 100}};
+}
+
+result compile_zones(const compile_input *in, compile_mesh *mesh, portal_choice choice, report *r, const allocator *memory, compiled_zones **out)
+{
+    const zone_options options = zone_options_of(choice);
+    return compile_zones_with(in, mesh, &options, r, memory, out);
 }
 
 void compiled_zones_free(compiled_zones *z)

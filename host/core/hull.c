@@ -7,18 +7,21 @@
 #include <portcullis/clip.h>
 
 #include <math.h>
+#include <string.h>
 
 static const double REACH_MOST = 4e9;    // metres: the first square's half side; twice what a bounded body can need
 static const double CORNER_MOST = 2e9;   // metres: a corner beyond it is the square's own
 static const double HULL_MOST = 1e9;     // metres: as for all coordinates of a scene
 static const double SAME_PLANE = 1e-12;  // two planes whose unit normals differ by less are parallel
 static const double VOLUME_LEAST = 1e-12; // of the cube of the body's diagonal: thinner is rounding, not a body
+static const double SAME_VOLUME = 1e-9;   // of the body's: what rounding may make of the same body with fewer planes
 
 typedef struct hull_measure {
     const scene_solid_plane *planes;
     uint32_t plane_count;
     double middle[3], reach; // squares reach that far from the middle
     double min[3], max[3], volume;
+    uint8_t has_face[HULL_CUTS_MOST];
 } hull_measure;
 
 static double dot(const double a[3], const double b[3])
@@ -104,6 +107,7 @@ static void measure(hull_measure *m)
     for (uint32_t i = 0; i < m->plane_count; ++i) {
         cull_point *points = first;
         const uint32_t count = face(m, i, &points, first, second);
+        m->has_face[i] = count >= 3;
         if (count < 3) continue;
         m->volume += twice_area(points, count, m->planes[i].normal) * distance_of(m, i) / 6;
         for (uint32_t c = 0; c < count; ++c) {
@@ -116,38 +120,64 @@ static void measure(hull_measure *m)
     }
 }
 
+static const char OPEN[] = "has a hull that is not closed on all sides";
+static const char EMPTY[] = "has an empty hull; its planes leave nothing between them";
+
 static const char *coarse_fault(const hull_measure *m)
 {
-    if (m->min[0] > m->max[0]) return "has an empty hull; its planes leave nothing between them";
+    if (m->min[0] > m->max[0]) return EMPTY;
     for (int k = 0; k < 3; ++k) {
-        if (m->min[k] < -CORNER_MOST || m->max[k] > CORNER_MOST) return "has a hull that is not closed on all sides";
+        if (m->min[k] < -CORNER_MOST || m->max[k] > CORNER_MOST) return OPEN;
         if (m->min[k] < -HULL_MOST || m->max[k] > HULL_MOST) return "reaches beyond 1e9 m; move it nearer to the origin";
     }
     return NULL;
 }
 
+// About the middle of a box that holds the body. 0: there is no body.
+static int measure_near(hull_measure *m, const double min[3], const double max[3])
+{
+    double size = 0, diagonal = 0;
+    for (int k = 0; k < 3; ++k) {
+        m->middle[k] = min[k] + (max[k] - min[k]) / 2;
+        size = fmax(size, max[k] - min[k]);
+    }
+    m->reach = 4 * size + 1e-3; // 1 mm: a body below the first measure's error is still found
+    measure(m);
+    for (int k = 0; k < 3; ++k) {
+        if (!(m->min[k] <= m->max[k])) return 0;
+        diagonal = hypot(diagonal, m->max[k] - m->min[k]);
+    }
+    return m->volume > VOLUME_LEAST * diagonal * diagonal * diagonal;
+}
+
 const char *hull_fault(const scene_solid_plane *planes, uint32_t plane_count, double min[3], double max[3])
 {
-    if (plane_count < 4) return "has a hull that is not closed on all sides";
+    if (plane_count < 4) return OPEN;
     hull_measure m = {.planes = planes, .plane_count = plane_count, .reach = REACH_MOST};
     measure(&m);
     const char *fault = coarse_fault(&m);
     if (fault) return fault;
-    double size = 0;
-    for (int k = 0; k < 3; ++k) {
-        m.middle[k] = m.min[k] + (m.max[k] - m.min[k]) / 2;
-        size = fmax(size, m.max[k] - m.min[k]);
-    }
-    m.reach = 4 * size + 1e-3; // 1 mm: a body below the first measure's error is still found
-    measure(&m);
-    double diagonal = 0;
-    for (int k = 0; k < 3; ++k) {
-        if (!(m.min[k] <= m.max[k])) return "has an empty hull; its planes leave nothing between them";
-        min[k] = m.min[k];
-        max[k] = m.max[k];
-        diagonal = hypot(diagonal, m.max[k] - m.min[k]);
-    }
-    return m.volume > VOLUME_LEAST * diagonal * diagonal * diagonal ? NULL : "has an empty hull; its planes leave nothing between them";
+    const double least[3] = {m.min[0], m.min[1], m.min[2]}, most[3] = {m.max[0], m.max[1], m.max[2]};
+    if (!measure_near(&m, least, most)) return EMPTY;
+    memcpy(min, m.min, sizeof m.min);
+    memcpy(max, m.max, sizeof m.max);
+    return NULL;
+}
+
+// Two planes a rounding apart may each leave no face of the other: then the body would grow without both, and all stay.
+const char *hull_needed(const scene_solid_plane *planes, uint32_t plane_count, uint8_t *is_needed, double min[3], double max[3])
+{
+    scene_solid_plane kept[HULL_CUTS_MOST];
+    hull_measure all = {.planes = planes, .plane_count = plane_count}, few = {.planes = kept};
+    if (plane_count < 4) return OPEN;
+    if (!measure_near(&all, min, max)) return EMPTY;
+    for (uint32_t i = 0; i < plane_count; ++i)
+        if (all.has_face[i]) kept[few.plane_count++] = planes[i];
+    const int is_same = few.plane_count == plane_count || (measure_near(&few, min, max) && fabs(few.volume - all.volume) <= SAME_VOLUME * all.volume);
+    for (uint32_t i = 0; i < plane_count; ++i) is_needed[i] = !is_same || all.has_face[i];
+    memcpy(min, all.min, sizeof all.min);
+    memcpy(max, all.max, sizeof all.max);
+    return NULL;
 }
 
 double hull_height(const scene_solid_plane *planes, uint32_t plane_count, const double p[3])

@@ -5,6 +5,8 @@
 #include "hull.h"
 #include "scene_builder.h"
 
+#include <string.h>
+
 static const size_t SOLIDS_MOST = 1u << 20; // no more pieces are made then
 
 typedef struct carving {
@@ -23,9 +25,23 @@ static int boxes_overlap(const scene_solid *s, const carving *c)
     return 1;
 }
 
+// Whether one of the planes has the whole box in front: the bodies are apart, without a look at their corners.
+static int parts_box(const scene_solid_plane *planes, uint32_t plane_count, const double min[3], const double max[3])
+{
+    for (uint32_t i = 0; i < plane_count; ++i) {
+        const double *n = planes[i].normal;
+        double least = -planes[i].distance;
+        for (int k = 0; k < 3; ++k) least += n[k] * (n[k] > 0 ? min[k] : max[k]);
+        if (least >= 0) return 1;
+    }
+    return 0;
+}
+
 static int is_carved(const carving *c, const scene_solid *s)
 {
-    return s->kind == SOLID_STRUCTURE && boxes_overlap(s, c) && s->plane_count + c->body_planes <= HULL_CUTS_MOST;
+    if (s->kind != SOLID_STRUCTURE || !boxes_overlap(s, c) || s->plane_count + c->body_planes > HULL_CUTS_MOST) return 0;
+    const scene_solid_plane *planes = (const scene_solid_plane *)c->b->solid_planes.items + s->first_plane;
+    return !parts_box(c->body, c->body_planes, s->min, s->max) && !parts_box(planes, s->plane_count, c->min, c->max);
 }
 
 static result keep(carving *c, const scene_solid *like, const scene_solid_plane *planes, uint32_t plane_count)
@@ -41,22 +57,53 @@ static scene_solid_plane flipped(const scene_solid_plane *p)
     return (scene_solid_plane){{-p->normal[0], -p->normal[1], -p->normal[2]}, -p->distance};
 }
 
-// A piece for each plane of the body: outside of it, inside of those before it.
+static uint32_t keep_needed(scene_solid_plane *planes, uint32_t plane_count, const uint8_t *is_needed)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < plane_count; ++i)
+        if (is_needed[i]) planes[kept++] = planes[i];
+    return kept;
+}
+
+// Of the solid's planes and the body's, those that bound what they share: no other plane of the body parts the solid.
+static uint32_t sharing_planes(carving *c, const scene_solid *s, scene_solid_plane *work, uint32_t *own)
+{
+    uint8_t is_needed[HULL_CUTS_MOST];
+    double min[3] = {s->min[0], s->min[1], s->min[2]}, max[3] = {s->max[0], s->max[1], s->max[2]};
+    if (hull_needed(work, s->plane_count + c->body_planes, is_needed, min, max)) return 0; // they share nothing
+    *own = s->plane_count; // all of these bound the pieces
+    return *own + keep_needed(work + *own, c->body_planes, is_needed + *own);
+}
+
+// Outside of the last plane, inside of the others, in the piece's box, which becomes its own. *kept planes bound it: they
+// are moved to the front.
+static int make_piece(scene_solid_plane *planes, uint32_t count, scene_solid *piece, uint32_t *kept)
+{
+    uint8_t is_needed[HULL_CUTS_MOST];
+    planes[count - 1] = flipped(&planes[count - 1]);
+    if (hull_needed(planes, count, is_needed, piece->min, piece->max)) return 0;
+    *kept = keep_needed(planes, count, is_needed);
+    return 1;
+}
+
+// A piece for each plane of the body that parts the solid: outside of it, inside of those before it.
 static result carve(carving *c, const scene_solid *s, const scene_solid_plane *planes)
 {
-    double min[3], max[3];
+    const uint32_t most = s->plane_count + c->body_planes;
     c->work.count = 0;
-    scene_solid_plane *work = buffer_push(&c->work, s->plane_count + c->body_planes);
+    scene_solid_plane *work = buffer_push(&c->work, 2 * (size_t)most);
     if (!work) return RESULT_NO_MEMORY;
-    for (uint32_t i = 0; i < s->plane_count; ++i) work[i] = planes[i];
-    for (uint32_t i = 0; i < c->body_planes; ++i) work[s->plane_count + i] = c->body[i];
-    if (hull_fault(work, s->plane_count + c->body_planes, min, max)) return keep(c, s, planes, s->plane_count); // they share nothing
+    memcpy(work, planes, s->plane_count * sizeof *work);
+    memcpy(work + s->plane_count, c->body, c->body_planes * sizeof *work);
+    uint32_t own = 0;
+    const uint32_t count = sharing_planes(c, s, work, &own);
+    if (count == 0) return keep(c, s, planes, s->plane_count);
     result done = RESULT_OK;
-    for (uint32_t i = 0; i < c->body_planes && done == RESULT_OK; ++i) {
+    for (uint32_t i = own; i < count && done == RESULT_OK; ++i) {
         scene_solid piece = *s;
-        work[s->plane_count + i] = flipped(&c->body[i]);
-        if (!hull_fault(work, s->plane_count + i + 1, piece.min, piece.max)) done = keep(c, &piece, work, s->plane_count + i + 1);
-        work[s->plane_count + i] = c->body[i];
+        uint32_t kept;
+        memcpy(work + most, work, (i + 1) * sizeof *work);
+        if (make_piece(work + most, i + 1, &piece, &kept)) done = keep(c, &piece, work + most, kept);
     }
     return done;
 }

@@ -43,7 +43,7 @@ printf '{\n"classname" "worldspawn"\n' > unclosed.map
 
 expect compiles 0 '"zones": 1' "$portcullis" compile room.map -o room.pcs --portals none --json
 for key in zones zones_sealed shells portals items polygons_in polygons_csg polygons_merged triangles t_junctions_inserted t_junctions_left open_edges \
-  degenerate_triangles leak weld_moves max_move cpu_ms stages_ms peak_bytes; do
+  degenerate_triangles leak weld_moves brushes_dropped max_move cpu_ms stages_ms peak_bytes; do
   expect "key_$key" 0 "\"$key\": [0-9[]" "$portcullis" compile room.map -o room.pcs --json
 done
 expect watertight 0 '"open_edges": 0' "$portcullis" compile room.map -o room.pcs --json
@@ -80,6 +80,40 @@ clockwise() { # seen from the first zone; the player's, at x under 64, is zone 0
   sed -n 4p rooms.prt | tr -d '()' | awk '{ nx = ($5 - $8) * ($12 - $9) - ($6 - $9) * ($11 - $8); exit !(nx != 0 && ($2 == 0 ? nx < 0 : nx > 0)) }'
 }
 holds prt_goes_clockwise clockwise
+
+# ---- Two leaves that each close their half: a portal that the zones have once is two of the scene ----
+{
+  sed '/func_door/,$d' rooms.map | sed '$d'
+  printf '{\n"classname" "func_door"\n"angle" "270"\n'
+  box 60 40 0 68 64 96
+  printf '}\n{\n"classname" "func_door"\n"angle" "90"\n'
+  box 60 64 0 68 88 96
+  printf '}\n{\n"classname" "info_player_start"\n"origin" "32 64 32"\n}\n'
+} > leaves.map
+expect portals_of_the_scene 0 '"portals": 2' "$portcullis" compile leaves.map -o leaves.pcs --json --prt leaves.prt
+expect portals_of_its_file 0 'portals +2$' "$portcullis" info leaves.pcs
+expect portals_of_the_zones 0 '^PRT1 2 1 $' sh -c 'head -n 3 leaves.prt | tr "\n" " "'
+holds counts_of_the_report_are_those_of_the_file sh -c '
+  "$0" compile leaves.map -o leaves.pcs --json | sed -n "s/^ *\"\(portals\|items\|triangles\)\": \([0-9]*\),*$/\1 \2/p" | sort > told.txt
+  "$0" info leaves.pcs | sed -n "s/^\(portals\|items\|triangles\)  *\([0-9]*\)$/\1 \2/p" | sort > held.txt
+  test "$(wc -l < told.txt)" = 3 && cmp told.txt held.txt' "$portcullis"
+
+# ---- A portal brush whose thin way no whole numbers hold: none, and a word, not one across another way ----
+{
+  sed '/func_door/,$d' rooms.map | sed '$d'
+  printf '{\n"classname" "zone_portal"\n{\n'
+  side '48.58203125 -65514.25 -65506.58203125' '66.0390625 65509.3515625 -65514.4453125' '50.51171875 0.02734375 65500.9140625'
+  side '56.58203125 -65514.25 -65506.58203125' '58.51171875 0.02734375 65500.9140625' '74.0390625 65509.3515625 -65514.4453125'
+  side '0 -8 0' '0 -8 1' '1 -8 0'
+  side '0 136 0' '1 136 0' '0 136 1'
+  side '0 0 -8' '1 0 -8' '0 1 -8'
+  side '0 0 136' '0 1 136' '1 0 136'
+  printf '}\n}\n{\n"classname" "info_player_start"\n"origin" "32 64 32"\n}\n'
+} > slanted.map
+expect slanted_portal 0 'slanted.map:[0-9]+: warning: this zone_portal is too slanted' "$portcullis" compile slanted.map -o slanted.pcs
+slanted_makes_none() { "$portcullis" compile slanted.map -o slanted.pcs --dump portals=pieces.txt && test -e pieces.txt && test ! -s pieces.txt; }
+holds slanted_portal_is_none slanted_makes_none
+
 expect leak_prt 0 '^PRT1 1 0 $' sh -c '"$0" compile leak.map -o leak.pcs --prt leak.prt >/dev/null 2>&1; tr "\n" " " <leak.prt' "$portcullis"
 expect pts 0 '"leak": 1' "$portcullis" compile leak.map -o leak.pcs --json --pts leak.pts
 expect pts_begins_at_the_entity 0 '^640 64 32$' head -n 1 leak.pts
@@ -130,7 +164,7 @@ expect full_dump 2 '/dev/full: error: cannot write it whole' "$portcullis" compi
 expect full_stdout 2 'cannot write to stdout' sh -c '"$0" compile room.map -o room.pcs --json > /dev/full' "$portcullis"
 
 expect no_output 2 'INPUT and -o are needed' "$portcullis" compile room.map
-expect bad_portals 2 "none, authored or doors" "$portcullis" compile room.map -o no.pcs --portals some
+expect bad_portals 2 "none, authored, doors or auto" "$portcullis" compile room.map -o no.pcs --portals some
 expect bad_grid 2 'whole number' "$portcullis" compile room.map -o no.pcs --grid 1.5
 expect bad_stage 2 'one of input relations csg weld merge portals zones t_junctions items' "$portcullis" compile room.map -o no.pcs --dump soup
 expect grid_0 2 'whole number from 1 to 65536' "$portcullis" compile room.map -o no.pcs --grid 0

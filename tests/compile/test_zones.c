@@ -253,6 +253,30 @@ static void a_door_as_thick_as_wide_parts_two_rooms_once(void **state)
     finish(&s, expect(&s, PORTALS_DOORS, (expected){2, 2, 3, 1}));
 }
 
+// The last door has the void behind it and parts nothing; without it the one before has, and so on to the first.
+static void a_row_of_doors_into_the_void_parts_nothing(void **state)
+{
+    (void)state;
+    enum { DOORS = 6, CELL = 64, LENGTH = (DOORS + 1) * CELL };
+    for (int is_closed = 0; is_closed < 2; ++is_closed) {
+        zone_scene s;
+        zone_scene_begin(&s);
+        zone_scene_hollow(&s, 0, 0, 0, 128, 128, 128);
+        zone_scene_box(&s, BRUSH_ADD, 292, -16, -16, 16, 96, 96);
+        zone_scene_box(&s, BRUSH_ADD, 308, -16, -16, LENGTH, 16, 96);
+        zone_scene_box(&s, BRUSH_ADD, 308, 64, -16, LENGTH, 16, 96);
+        zone_scene_box(&s, BRUSH_ADD, 308, 0, -16, LENGTH, 64, 16);
+        zone_scene_box(&s, BRUSH_ADD, 308, 0, 64, LENGTH, 64, 16);
+        if (is_closed) zone_scene_box(&s, BRUSH_ADD, 308 + LENGTH, -16, -16, 16, 96, 96);
+        for (int i = 1; i <= DOORS; ++i) {
+            zone_scene_brushes_of(&s, "func_door", BRUSH_ENTITY);
+            zone_scene_box(&s, BRUSH_ADD, 308 + i * CELL, 0, 0, 8, 64, 64);
+        }
+        zone_scene_point(&s, "light", 64, 64, 64);
+        finish(&s, expect(&s, PORTALS_DOORS, is_closed ? (expected){2 + DOORS, 1, 4 + DOORS, DOORS} : (expected){1, 1, 3, 0}));
+    }
+}
+
 static void a_leak_is_told_with_a_line_and_leaves_one_open_zone(void **state)
 {
     (void)state;
@@ -358,6 +382,7 @@ int main(void)
         cmocka_unit_test(an_authored_portal_parts_two_rooms_and_one_beside_the_way_does_not),
         cmocka_unit_test(a_lift_parts_its_shaft_like_a_door_whichever_way_is_up),
         cmocka_unit_test(a_door_as_thick_as_wide_parts_two_rooms_once),
+        cmocka_unit_test(a_row_of_doors_into_the_void_parts_nothing),
         cmocka_unit_test(a_leak_is_told_with_a_line_and_leaves_one_open_zone),
         cmocka_unit_test(water_is_open_but_holds_back_the_void),
         cmocka_unit_test(a_zone_info_names_its_zone_and_gives_the_chain),

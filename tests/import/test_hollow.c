@@ -152,6 +152,35 @@ static void test_a_portal_brush_of_the_compiler_is_neither_seen_nor_solid(void *
     scene_free(s, allocator_heap());
 }
 
+// Boxes less boxes are boxes: pieces of pieces don't gather the planes of all holes.
+static void test_pieces_have_no_plane_that_bounds_nothing(void **state)
+{
+    (void)state;
+    static const double box[3] = {0, 0, 0}, size = 640;
+    static map_text m;
+    m.size = 0;
+    map_add(&m, "{\n\"classname\" \"worldspawn\"\n");
+    map_add_box(&m, box, (const double[3]){size, size, size}, "rock");
+    map_add(&m, "}\n");
+    for (int i = 0; i < 8; ++i) { // each meets the next
+        const double low = 64 + 48 * i, high = low + 80;
+        map_add(&m, "{\n\"classname\" \"csg_subtract\"\n");
+        map_add_box(&m, (const double[3]){low, low, low}, (const double[3]){high, high, high}, "hole");
+        map_add(&m, "}\n");
+    }
+    scene *s = map_of(m.text, &doors_open);
+    double solid = 0, rock = 1, hole = 0;
+    for (int k = 0; k < 3; ++k) rock *= size / 32;
+    hole = 8 * pow(80.0 / 32, 3) - 7 * pow(1, 3); // less what two share, a cube of 32 units
+    for (uint32_t i = 0; i < s->solid_count; ++i) {
+        const scene_solid *b = &s->solids[i];
+        assert_int_equal(b->plane_count, 6);
+        solid += (b->max[0] - b->min[0]) * (b->max[1] - b->min[1]) * (b->max[2] - b->min[2]);
+    }
+    assert_true(s->solid_count > 6 && fabs(solid - (rock - hole)) < 1e-6);
+    scene_free(s, allocator_heap());
+}
+
 static void test_carving_takes_every_path_out_of_memory(void **state)
 {
     (void)state;
@@ -181,6 +210,7 @@ int main(void)
         cmocka_unit_test(test_automatic_views_stand_in_a_carved_room),
         cmocka_unit_test(test_what_is_added_later_is_not_carved),
         cmocka_unit_test(test_a_portal_brush_of_the_compiler_is_neither_seen_nor_solid),
+        cmocka_unit_test(test_pieces_have_no_plane_that_bounds_nothing),
         cmocka_unit_test(test_carving_takes_every_path_out_of_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,203 @@
+// From a tracing to cells, from cells to rooms, and the faces between rooms into the set of portals.
+// SPDX-License-Identifier: MIT
+#include "rooms.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double ORDER_STEPS = 1048576; // 2^20 a doubling, as for merging: sizes nearer than that tie
+
+enum { CENTRES = 3 };
+
+typedef struct wall_key { int64_t area, places[CENTRES]; uint32_t wall; } wall_key;
+
+typedef struct room_build {
+    const compile_input *in;
+    const zone_trace *t;
+    const allocator *memory;
+    buffer walls, edges; // cell_wall, polygon_edge
+    cell_set cells;
+    room_map rooms;
+    portal_set *set;
+} room_build;
+
+// ---- Walls ----
+
+static int goes_straight(const surface *s, const surface_corner *c, uint32_t count, uint32_t i)
+{
+    return surface_side(s, c[i + 1 < count ? i + 1 : 0].vertex, c[i ? i - 1 : count - 1].edge) == 0;
+}
+
+static result wall_add(room_build *b, uint32_t polygon, uint32_t front, uint32_t behind)
+{
+    const surface *s = &b->t->s;
+    const surface_polygon *p = surface_polygon_at(s, polygon);
+    const surface_corner *c = surface_corners(s, p);
+    const int turned = front == CELL_SOLID; // air behind only: seen from there
+    cell_wall wall = {{p->plane, (uint32_t)b->edges.count, 0}, turned ? behind : front, turned ? front : behind};
+    for (uint32_t i = 0; i < p->count; ++i) {
+        if (goes_straight(s, c, p->count, i)) continue;
+        polygon_edge *e = buffer_push(&b->edges, 1);
+        if (!e) return RESULT_NO_MEMORY;
+        *e = (polygon_edge){.plane = c[i].edge};
+        memcpy(e->start, surface_vertex_at(s, c[i].vertex)->position, sizeof e->start);
+        wall.shape.count++;
+    }
+    return buffer_append(&b->walls, &wall, 1) ? RESULT_OK : RESULT_NO_MEMORY;
+}
+
+static uint32_t region_at(const zone_trace *t, uint32_t face)
+{
+    const uint32_t region = zone_trace_region(t, face);
+    return region == REGION_VOID ? CELL_SOLID : region;
+}
+
+static result walls_take(room_build *b)
+{
+    result r = RESULT_OK;
+    for (uint32_t i = 0; i < surface_polygon_count(&b->t->s) && r == RESULT_OK; ++i) {
+        const surface_kind kind = surface_polygon_at(&b->t->s, i)->kind;
+        if (kind == SURFACE_LIQUID) continue;
+        const uint32_t front = region_at(b->t, 2 * i), behind = surface_is_two_sided(kind) ? region_at(b->t, 2 * i + 1) : CELL_SOLID;
+        if (front != CELL_SOLID) r = wall_add(b, i, front, behind);
+    }
+    return r;
+}
+
+// ---- Their order ----
+
+static int64_t rounded_log(double x)
+{
+    return x > 0 ? llround(log2(x) * ORDER_STEPS) : INT64_MIN / 2;
+}
+
+static void middle_of(const polygon_edge *edges, uint32_t count, double out[3])
+{
+    for (int k = 0; k < 3; ++k) {
+        out[k] = 0;
+        for (uint32_t i = 0; i < count; ++i) out[k] += edges[i].start[k] / count;
+    }
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const wall_key *x = a, *y = b;
+    if (x->area != y->area) return x->area > y->area ? -1 : 1;
+    for (int i = 0; i < CENTRES; ++i)
+        if (x->places[i] != y->places[i]) return x->places[i] > y->places[i] ? -1 : 1;
+    return (x->wall > y->wall) - (x->wall < y->wall);
+}
+
+// Weighed by area, its square and its cube: a symmetric pair is told apart by what is not.
+static void centres_of(const room_build *b, double out[CENTRES][3])
+{
+    const cell_wall *w = b->walls.items;
+    double weights[CENTRES] = {0};
+    memset(out, 0, CENTRES * sizeof *out);
+    for (size_t i = 0; i < b->walls.count; ++i) {
+        const polygon_edge *edges = (polygon_edge *)b->edges.items + w[i].shape.first;
+        const double area = polygon_area(edges, w[i].shape.count);
+        double middle[3], weight = 1;
+        middle_of(edges, w[i].shape.count, middle);
+        for (int c = 0; c < CENTRES; ++c) {
+            weights[c] += weight *= area;
+            for (int k = 0; k < 3; ++k) out[c][k] += weight * middle[k];
+        }
+    }
+    for (int c = 0; c < CENTRES; ++c)
+        for (int k = 0; k < 3 && weights[c] > 0; ++k) out[c][k] /= weights[c];
+}
+
+static wall_key key_of(const room_build *b, uint32_t wall, const double centres[CENTRES][3])
+{
+    const cell_wall *w = (cell_wall *)b->walls.items + wall;
+    const polygon_edge *edges = (polygon_edge *)b->edges.items + w->shape.first;
+    wall_key out = {.area = rounded_log(polygon_area(edges, w->shape.count)), .wall = wall};
+    double middle[3];
+    middle_of(edges, w->shape.count, middle);
+    for (int c = 0; c < CENTRES; ++c) {
+        double square = 0;
+        for (int k = 0; k < 3; ++k) square += (middle[k] - centres[c][k]) * (middle[k] - centres[c][k]);
+        out.places[c] = rounded_log(square);
+    }
+    return out;
+}
+
+// Large walls first, then those far from the middle of all: a turned or moved map has the same order.
+static result walls_order(room_build *b)
+{
+    const size_t count = b->walls.count;
+    const cell_wall *w = b->walls.items;
+    wall_key *keys = memory_alloc(b->memory, count, sizeof *keys);
+    cell_wall *sorted = memory_alloc(b->memory, count, sizeof *sorted);
+    if (keys && sorted && count) {
+        double centres[CENTRES][3];
+        centres_of(b, centres);
+        for (size_t i = 0; i < count; ++i) keys[i] = key_of(b, (uint32_t)i, (const double(*)[3])centres);
+        qsort(keys, count, sizeof *keys, by_size);
+        for (size_t i = 0; i < count; ++i) sorted[i] = w[keys[i].wall];
+        memcpy(b->walls.items, sorted, count * sizeof *sorted);
+    }
+    const result r = keys && sorted ? RESULT_OK : RESULT_NO_MEMORY;
+    memory_free(b->memory, keys, count, sizeof *keys);
+    memory_free(b->memory, sorted, count, sizeof *sorted);
+    return r;
+}
+
+// ---- Portals ----
+
+static result piece_add(room_build *b, const cell_face *f)
+{
+    surface *s = &b->set->s;
+    const polygon_edge *edges = (polygon_edge *)b->cells.edges.items + f->shape.first;
+    surface_corner *corners = memory_alloc(b->memory, f->shape.count, sizeof *corners);
+    result r = corners ? RESULT_OK : RESULT_NO_MEMORY;
+    for (uint32_t i = 0; i < f->shape.count && r == RESULT_OK; ++i) {
+        plane_ref meet[3];
+        polygon_corner(f->shape.plane, edges, f->shape.count, i, meet);
+        corners[i].edge = edges[i].plane;
+        r = surface_vertex(s, meet, &corners[i].vertex);
+    }
+    portal_piece piece = {.entity = COMPILE_NOTHING};
+    const surface_polygon like = {.kind = SURFACE_PORTAL, .material = COMPILE_NOTHING, .brush = COMPILE_NOTHING};
+    if (r == RESULT_OK) r = surface_add(s, f->shape.plane, corners, f->shape.count, &like, &piece.polygon);
+    if (r == RESULT_OK && !buffer_append(&b->set->pieces, &piece, 1)) r = RESULT_NO_MEMORY;
+    memory_free(b->memory, corners, f->shape.count, sizeof *corners);
+    return r;
+}
+
+static result pieces_add(room_build *b)
+{
+    const cell_face *f = b->cells.faces.items;
+    result r = RESULT_OK;
+    for (size_t i = 0; i < b->cells.faces.count && r == RESULT_OK; ++i) {
+        if (b->rooms.room_of[f[i].cells[0]] == b->rooms.room_of[f[i].cells[1]]) continue;
+        r = piece_add(b, &f[i]);
+    }
+    return r;
+}
+
+result rooms_portals(const compile_input *in, const zone_trace *t, const room_limits *limits, portal_set *set)
+{
+    const allocator *memory = set->s.memory;
+    room_build b = {.in = in,
+                    .t = t,
+                    .memory = memory,
+                    .walls = buffer_make(memory, sizeof(cell_wall)),
+                    .edges = buffer_make(memory, sizeof(polygon_edge)),
+                    .set = set};
+    result r = walls_take(&b);
+    if (r == RESULT_OK) r = walls_order(&b);
+    if (r == RESULT_OK) {
+        const cell_input from = {in->planes, b.walls.items, b.edges.items, (uint32_t)b.walls.count, (uint32_t)b.edges.count};
+        r = cell_set_make(&from, memory, &b.cells);
+        if (r == RESULT_OK) r = rooms_merge(&b.cells, limits, memory, &b.rooms);
+        if (r == RESULT_OK) r = pieces_add(&b);
+        room_map_free(&b.rooms, memory);
+        cell_set_free(&b.cells);
+    }
+    buffer_free(&b.walls);
+    buffer_free(&b.edges);
+    return r;
+}
