@@ -20,20 +20,66 @@ void zone_place_point(const compile_input *in, const compile_entity *e, int32_t 
     for (int k = 0; k < 3; ++k) out[k] = on_grid(e->origin[k] * in->steps_per_metre);
 }
 
-// Up first: most stand on a floor. Off a wall never into the void: that would be a leak that isn't there.
+typedef struct place_votes { uint32_t regions[6], votes[6], count; } place_votes;
+
+static void vote(place_votes *v, uint32_t region)
+{
+    uint32_t i = 0;
+    while (i < v->count && v->regions[i] != region) ++i;
+    if (i == v->count) v->regions[v->count] = region, v->votes[v->count++] = 0;
+    v->votes[i]++;
+}
+
+// A region's size for ties, rounded far coarser than doubles err: a turned map gives the same.
+static int64_t region_extent(const zone_trace *t, uint32_t region)
+{
+    double sum = 0;
+    for (uint32_t f = 0; f < t->shells.face_count; ++f) {
+        if (t->shells.shell_of[f] == SHELL_NONE || zone_trace_region(t, f) != region) continue;
+        const surface_polygon *p = surface_polygon_at(&t->s, f >> 1);
+        const surface_corner *c = surface_corners(&t->s, p);
+        for (uint32_t i = 0; i < p->count; ++i) {
+            const double *a = surface_vertex_at(&t->s, c[i].vertex)->position, *b = surface_vertex_at(&t->s, c[i + 1 < p->count ? i + 1 : 0].vertex)->position;
+            sum += sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) + (b[2] - a[2]) * (b[2] - a[2]));
+        }
+    }
+    return sum > 0 ? llround(log2(sum) * 1048576) : 0;
+}
+
+static uint32_t elected(const zone_trace *t, const place_votes *v)
+{
+    uint32_t best = REGION_SOLID, most = 0;
+    int64_t extent = 0;
+    for (uint32_t i = 0; i < v->count; ++i) {
+        if (v->votes[i] < most) continue;
+        const int64_t own = region_extent(t, v->regions[i]);
+        if (v->votes[i] == most && own <= extent) continue;
+        best = v->regions[i];
+        most = v->votes[i];
+        extent = own;
+    }
+    return best;
+}
+
+// One on a floor, in a wall's face or a portal's is where most ways off it lead, then in the larger region: the same
+// however the map is turned. Off a wall never into the void: that would be a leak that isn't there.
 static result place(const compile_input *in, zone_trace *t, const compile_entity *e, uint32_t *region)
 {
     static const int32_t ways[][3] = {{0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {0, -1, 0}};
     const double nudge = NUDGE_UNITS * in->steps_per_metre / UNITS_A_METRE;
+    place_votes votes = {.count = 0};
     int32_t point[3];
     zone_place_point(in, e, point);
     result r = region_of_point(&t->regions, &t->rays, point, region);
-    for (size_t i = 0; i < sizeof(ways) / sizeof(ways[0]) && r == RESULT_OK && *region == REGION_SOLID; ++i) {
+    if (r != RESULT_OK || *region != REGION_SOLID) return r;
+    for (size_t i = 0; i < sizeof(ways) / sizeof(ways[0]) && r == RESULT_OK; ++i) {
         int32_t by[3];
+        uint32_t found;
         for (int k = 0; k < 3; ++k) by[k] = on_grid(point[k] + ways[i][k] * nudge);
-        r = region_of_point(&t->regions, &t->rays, by, region);
-        if (*region == REGION_VOID) *region = REGION_SOLID;
+        r = region_of_point(&t->regions, &t->rays, by, &found);
+        if (r == RESULT_OK && found != REGION_SOLID && found != REGION_VOID) vote(&votes, found);
     }
+    *region = elected(t, &votes);
     return r;
 }
 
