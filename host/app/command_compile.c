@@ -10,6 +10,7 @@
 #include "compile_dump.h"
 #include "compile_report.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,7 +80,8 @@ static result write_dump(compilation *c, const compile_view *made, const char *p
     const int failed = ferror(to) | fclose(to);
     result done = failed ? report_no_memory(&c->report, path) : RESULT_OK;
     if (done == RESULT_OK && *path) done = file_write(path, text, size, &c->report);
-    else if (done == RESULT_OK) fwrite(text, 1, size, stdout); // main tells of a stdout that cannot be written
+    else if (done == RESULT_OK && (fwrite(text, 1, size, stdout) != size || fflush(stdout) != 0)) // before anything else is written
+        done = report_error(&c->report, "stdout", 0, "cannot write the dump: %s", strerror(errno));
     free(text);
     return done;
 }

@@ -10,6 +10,7 @@
 #include <argp.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 
 static const struct argp_option options[] = {
@@ -110,6 +111,10 @@ result compile_arguments_check(const compile_arguments *a, report *r)
 {
     const char *outputs[3 + STAGES_DUMPED] = {a->out, a->prt, a->pts};
     memcpy(outputs + 3, a->dump_files, sizeof a->dump_files);
+    const char *dot = strrchr(a->out, '.');
+    const int is_device = strncmp(a->out, "/dev/", 5) == 0;
+    if (!is_device && (!dot || strcasecmp(dot, ".pcs") != 0))
+        return report_error(r, a->out, 0, "a compiled scene is a .pcs file; end the name in .pcs");
     if (!*a->input) return report_error(r, NULL, 0, "an empty file name; name a .map or .json of brushes");
     for (int i = 0; i < 3 + STAGES_DUMPED; ++i) {
         if (!outputs[i] || (i >= 3 && !*outputs[i])) continue;

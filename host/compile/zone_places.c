@@ -144,16 +144,27 @@ static result tell(compiled_zones *z, compiled_zone *zone, const compile_entity 
     return RESULT_OK;
 }
 
-result zone_places_name(const compile_input *in, const zone_places *p, compiled_zones *z)
+static void warn(const compile_input *in, const compile_entity *info, const char *what, report *r)
+{
+    report_warning(r, in->path, info->line, "the zone_info at %g %g %g %s", info->origin[0], info->origin[1], info->origin[2], what);
+}
+
+result zone_places_name(const compile_input *in, const zone_places *p, report *r, compiled_zones *z)
 {
     for (uint32_t e = 0; e < in->entity_count; ++e) {
         const uint32_t region = p->region_of[e];
-        if (region == REGION_NOT_PLACED || (!z->leak && region >= p->region_count)) continue;
+        const int is_info = strcmp(in->entities[e].class_name, "zone_info") == 0;
+        if (region == REGION_NOT_PLACED) continue;
+        if (!z->leak && region >= p->region_count) {
+            if (is_info) warn(in, &in->entities[e], "stands in no air and names no zone; move it into the zone", r);
+            continue;
+        }
         compiled_zone *zone = &z->zones[z->leak ? 0 : p->zone_of[region]];
         zone->entity_count++;
-        if (strcmp(in->entities[e].class_name, "zone_info") != 0) continue;
-        const result r = tell(z, zone, &in->entities[e]);
-        if (r != RESULT_OK) return r;
+        if (!is_info) continue;
+        if (!z->leak && (zone->name || zone->chain)) warn(in, &in->entities[e], "shares its zone with an earlier one, which wins; take one away", r);
+        const result told = tell(z, zone, &in->entities[e]);
+        if (told != RESULT_OK) return told;
     }
     for (uint32_t i = 0; i < z->zone_count; ++i) {
         char text[32];

@@ -39,7 +39,7 @@ typedef struct zone_places {
 result zone_places_make(const compile_input *in, zone_trace *t, const allocator *memory, zone_places *out);
 void zone_places_free(zone_places *p); // of zeros is fine
 void zone_place_point(const compile_input *in, const compile_entity *e, int32_t out[3]); // its origin on the grid
-result zone_places_name(const compile_input *in, const zone_places *p, compiled_zones *z); // fills z->zones
+result zone_places_name(const compile_input *in, const zone_places *p, report *r, compiled_zones *z); // fills z->zones
 
 // t_junctions.c: the surface back into z->mesh, every vertex of a line in all edges that run over it; polygon_zone, portals.
 // ZONES_OPEN: all polygons into zone 0, no portals.

@@ -186,6 +186,16 @@ static void reject_on_seals(zone_build *b, const compile_mesh *mesh)
     }
 }
 
+static void tell_seal(const zone_build *b, const compile_mesh *mesh)
+{
+    uint32_t i = 0, count = 0;
+    for (uint32_t k = mesh->polygon_count; k-- > 0;)
+        if (b->seals[k]) i = k, ++count;
+    const compile_polygon *p = &mesh->polygons[i];
+    report_warning(b->report, b->in->path, b->in->faces[p->face].line,
+                   "faces of liquids hold back the void: %u, this one first; without them the map leaks: put a wall behind them", count);
+}
+
 // A liquid that stands against the void holds it back, as the maps' own compilers have it; only where the map would leak.
 static result settle_sealed(zone_build *b, const compile_mesh *mesh)
 {
@@ -198,6 +208,7 @@ static result settle_sealed(zone_build *b, const compile_mesh *mesh)
         set_rejected(b, 0);
         reject_on_seals(b, mesh);
         r = settle(b, mesh);
+        if (r == RESULT_OK && b->places.leaking == ZONE_NONE) tell_seal(b, mesh);
         if (r != RESULT_OK || b->places.leaking == ZONE_NONE) return r;
     }
     if (r != RESULT_OK) return r;
@@ -257,7 +268,7 @@ static result run(zone_build *b, compiled_zones *z)
     z->zones = arena_push(&z->memory, z->zone_count, sizeof(compiled_zone));
     if (!z->zones) return RESULT_NO_MEMORY;
     for (uint32_t i = 0; i < z->zone_count; ++i) z->zones[i] = (compiled_zone){0};
-    r = zone_places_name(b->in, &b->places, z);
+    r = zone_places_name(b->in, &b->places, b->report, z);
     if (r == RESULT_OK) compile_tell(&(compile_view){STAGE_ZONES, b->in, .trace = &b->trace, .places = &b->places, .zones = z});
     if (r == RESULT_OK) r = line_set_add_touches(&b->trace.lines);
     if (r == RESULT_OK) r = zone_emit(&b->trace, &b->trace.rays, &b->places, z->leak ? ZONES_OPEN : ZONES_CLOSED, z);

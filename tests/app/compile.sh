@@ -152,15 +152,19 @@ expect empty 2 'empty.map:1: error: no entity in it' "$portcullis" compile empty
 expect cut 2 'cut.map:[0-9]+: error' "$portcullis" compile cut.map -o no.pcs
 expect folder 2 'folder.map: error: not a regular file' "$portcullis" compile folder.map -o no.pcs
 expect no_name 2 'an empty file name; name a .map' "$portcullis" compile '' -o no.pcs
-expect onto_itself 2 'room.map: error: is the input itself' "$portcullis" compile room.map -o room.map
+expect onto_a_map 2 'room.map: error: a compiled scene is a .pcs file' "$portcullis" compile room.map -o room.map
+expect no_ending 2 'room: error: a compiled scene is a .pcs file' "$portcullis" compile room.map -o room
 ln -s room.map link.pcs
 expect onto_itself_by_a_link 2 'link.pcs: error: is the input itself' "$portcullis" compile room.map -o link.pcs
 holds input_is_kept grep -q worldspawn room.map
 expect two_outputs 2 'no.prt: error: named for two outputs' "$portcullis" compile room.map -o no.pcs --prt no.prt --dump csg=no.prt
-expect into_a_folder 2 'folder.map: error: is a folder' "$portcullis" compile room.map -o folder.map
+mkdir folder.pcs
+expect into_a_folder 2 'folder.pcs: error: is a folder' "$portcullis" compile room.map -o folder.pcs
+rmdir folder.pcs
 expect full 2 '/dev/full: error: cannot write it whole' "$portcullis" compile room.map -o /dev/full
 expect full_prt 2 '/dev/full: error: cannot write it whole' "$portcullis" compile room.map -o no.pcs --prt /dev/full
 expect full_dump 2 '/dev/full: error: cannot write it whole' "$portcullis" compile room.map -o no.pcs --dump csg=/dev/full
+expect full_stdout_dump 2 'stdout: error: cannot write the dump' sh -c '"$0" compile room.map -o no.pcs --dump csg > /dev/full' "$portcullis"
 expect full_stdout 2 'cannot write to stdout' sh -c '"$0" compile room.map -o room.pcs --json > /dev/full' "$portcullis"
 
 expect no_output 2 'INPUT and -o are needed' "$portcullis" compile room.map
