@@ -2,8 +2,10 @@
 // weld, no face is bent by much more, and the faces' middles lie within the weld of each other, so that no chain drifts.
 // SPDX-License-Identifier: MIT
 // Where a face is on the grid as written, that plane is one of those there were; between rounded ones it may be a new one.
-// Invariant: pairs are joined nearest first, then by their planes' numbers: the order of the file doesn't matter.
+// Invariant: pairs are joined nearest first, then by their planes' places (input_order.h): how the map is written or turned
+// doesn't matter.
 #include "input_cluster.h"
+#include "input_order.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -25,6 +27,7 @@ typedef struct member { // of a cluster, by plane
 
 typedef struct clusters {
     input_draft *draft;
+    place_order order;
     buffer members;        // member
     buffer faces, corners; // face_spot by plane; double[3]
 } clusters;
@@ -46,13 +49,6 @@ static double height(const unit_plane *u, const double p[3])
 static const cull_wide_plane *plane_at(const clusters *c, uint32_t plane)
 {
     return plane_table_canonical(c->draft->in->planes, 2 * plane);
-}
-
-int compare_planes(const cull_wide_plane *a, const cull_wide_plane *b)
-{
-    for (int k = 0; k < 3; ++k)
-        if (a->normal[k] != b->normal[k]) return a->normal[k] < b->normal[k] ? -1 : 1;
-    return cull_wide_sign(cull_wide_subtract(a->offset, b->offset));
 }
 
 // ---- Faces by plane ----
@@ -166,10 +162,10 @@ static uint32_t bits_of(const cull_wide_plane *p)
     return bits;
 }
 
-static int is_simpler(const cull_wide_plane *a, const cull_wide_plane *b)
+static int is_simpler(const clusters *c, const cull_wide_plane *a, const cull_wide_plane *b)
 {
     const uint32_t bits = bits_of(a), other = bits_of(b);
-    return bits < other || (bits == other && compare_planes(a, b) < 0);
+    return bits < other || (bits == other && compare_plane_places(&c->order, a, b) < 0);
 }
 
 // ---- A plane through the midst of all faces ----
@@ -254,7 +250,7 @@ static double square(const double v[3])
     return v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
 }
 
-// The corner farthest from a point, and off a line when that has a direction; of equal ones the first by place.
+// The corner farthest from a point, and off a line when that has a direction; of equal ones the first by place (input_order.h).
 static void farthest(const clusters *c, const uint32_t roots[2], const double from[3], const double along[3], const double **best)
 {
     const member *members = c->members.items;
@@ -268,8 +264,8 @@ static void farthest(const clusters *c, const uint32_t roots[2], const double fr
                     double v[3], off = 0;
                     for (int k = 0; k < 3; ++k) v[k] = corners[i][k] - from[k];
                     for (int k = 0; k < 3; ++k) off += v[k] * along[k];
-                    const double far = square(v) - off * off;
-                    if (far <= most) continue;
+                    const double far = steady(sqrt(fmax(square(v) - off * off, 0)));
+                    if (far < most || (far == most && compare_places(&c->order, corners[i], *best) >= 0)) continue;
                     most = far;
                     *best = corners[i];
                 }
@@ -283,7 +279,7 @@ static void round_onto(const clusters *c, const unit_plane *u, const double p[3]
     for (uint32_t step = coarsest;; step = step % 2 ? 1 : step / 2) {
         int near = 1;
         for (int k = 0; k < 3; ++k) {
-            const double at = p[k] - off * u->normal[k], to = nearbyint(at / step) * step;
+            const double at = steady(p[k] - off * u->normal[k]), to = nearbyint(at / step) * step;
             near &= fabs(to - at) <= c->draft->weld && fabs(to) <= CULL_GRID_MOST;
             out[k] = (int32_t)fmax(-CULL_GRID_MOST, fmin(CULL_GRID_MOST, to));
         }
@@ -330,7 +326,7 @@ static result find_common(clusters *c, const uint32_t roots[2], plane_ref *out)
 {
     const member *members = c->members.items;
     plane_ref one = members[roots[0]].stands, other = members[roots[1]].stands;
-    if (is_simpler(plane_at(c, other >> 1), plane_at(c, one >> 1))) {
+    if (is_simpler(c, plane_at(c, other >> 1), plane_at(c, one >> 1))) {
         const plane_ref swap = one;
         one = other;
         other = swap;
@@ -353,21 +349,22 @@ typedef struct link { // a pair to be linked, with what it is ordered by
     double apart;
     cull_wide_plane low, high;
     uint32_t a, b;
+    const place_order *order;
 } link;
 
 static int compare_links(const void *left, const void *right)
 {
     const link *a = left, *b = right;
     if (a->apart != b->apart) return a->apart < b->apart ? -1 : 1;
-    const int low = compare_planes(&a->low, &b->low);
-    return low ? low : compare_planes(&a->high, &b->high);
+    const int low = compare_plane_places(a->order, &a->low, &b->low);
+    return low ? low : compare_plane_places(a->order, &a->high, &b->high);
 }
 
 static result join(clusters *c, const link *l)
 {
     uint32_t roots[2] = {root_of(c, l->a), root_of(c, l->b)};
     if (roots[0] == roots[1]) return RESULT_OK;
-    if (compare_planes(plane_at(c, roots[1]), plane_at(c, roots[0])) < 0) {
+    if (compare_plane_places(&c->order, plane_at(c, roots[1]), plane_at(c, roots[0])) < 0) {
         const uint32_t swap = roots[0];
         roots[0] = roots[1];
         roots[1] = swap;
@@ -391,8 +388,8 @@ static result join_all(clusters *c, const near_pair *pairs, size_t count)
     result done = l ? RESULT_OK : RESULT_NO_MEMORY;
     for (size_t i = 0; i < count && done == RESULT_OK; ++i) {
         const cull_wide_plane *a = plane_at(c, pairs[i].a), *b = plane_at(c, pairs[i].b);
-        const int forward = compare_planes(a, b) < 0;
-        l[i] = (link){pairs[i].apart, forward ? *a : *b, forward ? *b : *a, pairs[i].a, pairs[i].b};
+        const int forward = compare_plane_places(&c->order, a, b) < 0;
+        l[i] = (link){steady(pairs[i].apart), forward ? *a : *b, forward ? *b : *a, pairs[i].a, pairs[i].b, &c->order};
     }
     if (done == RESULT_OK) qsort(l, count, sizeof *l, compare_links);
     for (size_t i = 0; i < count && done == RESULT_OK; ++i) done = join(c, &l[i]);
@@ -404,6 +401,7 @@ result plane_clusters_find(input_draft *d, const near_pair *pairs, size_t count,
 {
     const allocator *memory = d->faces.memory;
     clusters c = {.draft = d,
+                  .order = place_order_of(d->brushes.items, d->brushes.count),
                   .members = buffer_make(memory, sizeof(member)),
                   .faces = buffer_make(memory, sizeof(face_spot)),
                   .corners = buffer_make(memory, sizeof(double[3]))};

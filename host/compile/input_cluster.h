@@ -10,8 +10,6 @@ typedef struct near_pair {
     double apart;  // steps, the most that any two brushes have
 } near_pair;
 
-// By their planes' numbers, not by their place in the file.
-int compare_planes(const cull_wide_plane *a, const cull_wide_plane *b);
 // to: by plane number, the plane that it is to become; PLANE_NONE: it stays. Planes that none of the faces had may be new.
 // pairs: of planes that touch and are near, each once.
 result plane_clusters_find(input_draft *d, const near_pair *pairs, size_t count, buffer *to);

@@ -5,6 +5,7 @@
 // no corner goes farther than the weld; the rounds are few.
 #include "input_cluster.h"
 #include "input_meet.h"
+#include "input_order.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -16,7 +17,7 @@ static const double ON_PLANE = 1.0 / 1024; // steps: far above a position's erro
 typedef struct grid_point { int32_t at[3]; } grid_point;
 
 typedef struct near_spot { // where corners and planes nearly meet
-    double low[3], high[3];
+    double low[3], high[3], far; // far: of its first corner from the centre
     uint32_t planes[NEAR_PLANES_MOST], plane_count, is_settled;
     grid_point target;
 } near_spot;
@@ -27,11 +28,12 @@ typedef struct plane_user { uint32_t plane, brush; } plane_user;
 
 typedef struct join {
     input_draft *draft;
+    place_order place;
     meeting_set meetings;
     buffer order, spots; // uint32_t: meetings apart by place; near_spot
     buffer of_plane;     // uint32_t: spots of one plane
     size_t first_meeting, end_meeting; // of that plane
-    buffer own;          // double[3]: corners of the faces on one plane
+    buffer own;          // placed: corners of the faces on one plane
     buffer all_users;    // plane_user: by plane, as the round began
     buffer users;        // uint32_t: brushes with that plane
     buffer anchors;      // grid_point
@@ -47,13 +49,13 @@ static const brush_corner *corner_of(const join *j, const brush_meeting *m)
     return (const brush_corner *)j->meetings.corners.items + m->corner;
 }
 
-typedef struct placed { double at[3]; uint32_t meeting; } placed;
+typedef struct placed { double at[3]; uint32_t meeting; const place_order *order; } placed;
 
 static int compare_placed(const void *left, const void *right)
 {
     const placed *a = left, *b = right;
-    for (int k = 0; k < 3; ++k)
-        if (a->at[k] != b->at[k]) return a->at[k] < b->at[k] ? -1 : 1;
+    const int order = compare_places(a->order, a->at, b->at);
+    if (order) return order;
     return a->meeting < b->meeting ? -1 : a->meeting > b->meeting;
 }
 
@@ -64,14 +66,14 @@ static void spot_add_plane(near_spot *s, uint32_t plane)
     if (s->plane_count < NEAR_PLANES_MOST) s->planes[s->plane_count++] = plane;
 }
 
-// By their planes' numbers: where brushes stand in the file doesn't matter.
+// By their planes' places: where brushes stand in the file doesn't matter.
 static void sort_planes(const join *j, near_spot *s)
 {
     const plane_table *t = j->draft->in->planes;
     for (uint32_t i = 1; i < s->plane_count; ++i) {
         const uint32_t moved = s->planes[i];
         uint32_t at = i;
-        for (; at > 0 && compare_planes(plane_table_canonical(t, 2 * moved), plane_table_canonical(t, 2 * s->planes[at - 1])) < 0; --at)
+        for (; at > 0 && compare_plane_places(&j->place, plane_table_canonical(t, 2 * moved), plane_table_canonical(t, 2 * s->planes[at - 1])) < 0; --at)
             s->planes[at] = s->planes[at - 1];
         s->planes[at] = moved;
     }
@@ -81,13 +83,13 @@ static void sort_planes(const join *j, near_spot *s)
 static near_spot *spot_for(join *j, const double at[3])
 {
     near_spot *spots = j->spots.items;
-    const double weld = j->draft->weld;
-    for (size_t i = j->spots.count; i-- > 0 && spots[i].low[0] >= at[0] - 2 * weld;) { // they come in order of x
+    const double weld = j->draft->weld, far = place_distance(&j->place, at);
+    for (size_t i = j->spots.count; i-- > 0 && spots[i].far >= far - 2 * weld;) { // they come in that order, and a spot is a cube of the weld
         int fits = 1;
         for (int k = 0; k < 3; ++k) fits &= fmax(spots[i].high[k], at[k]) - fmin(spots[i].low[k], at[k]) <= weld;
         if (fits) return &spots[i];
     }
-    const near_spot none = {{at[0], at[1], at[2]}, {at[0], at[1], at[2]}, {0}, 0, 0, {{0, 0, 0}}};
+    const near_spot none = {{at[0], at[1], at[2]}, {at[0], at[1], at[2]}, far, {0}, 0, 0, {{0, 0, 0}}};
     return buffer_append(&j->spots, &none, 1);
 }
 
@@ -97,7 +99,7 @@ static result find_spots(join *j)
     j->order.count = j->spots.count = 0;
     for (uint32_t i = 0; i < j->meetings.meetings.count; ++i) {
         const double *p = corner_of(j, &all[i])->position;
-        const placed made = {{p[0], p[1], p[2]}, i};
+        const placed made = {{p[0], p[1], p[2]}, i, &j->place};
         if (all[i].is_apart && !buffer_append(&j->order, &made, 1)) return RESULT_NO_MEMORY;
     }
     placed *order = j->order.items;
@@ -124,8 +126,8 @@ static result find_spots(join *j)
 static int rounded_to(const join *j, const double p[3], double step, grid_point *out)
 {
     for (int k = 0; k < 3; ++k) {
-        const double at = nearbyint(p[k] / step) * step;
-        if (fabs(at - p[k]) > j->draft->weld || fabs(at) > CULL_GRID_MOST) return 0;
+        const double at = nearbyint(steady(p[k]) / step) * step;
+        if (fabs(at - steady(p[k])) > j->draft->weld || fabs(at) > CULL_GRID_MOST) return 0;
         out->at[k] = (int32_t)at;
     }
     return 1;
@@ -185,10 +187,8 @@ static result gather_spots(join *j, uint32_t plane)
 
 static int compare_points(const void *left, const void *right)
 {
-    const double *a = left, *b = right;
-    for (int k = 0; k < 3; ++k)
-        if (a[k] != b[k]) return a[k] < b[k] ? -1 : 1;
-    return 0;
+    const placed *a = left, *b = right;
+    return compare_places(a->order, a->at, b->at);
 }
 
 static int compare_users(const void *left, const void *right)
@@ -238,11 +238,13 @@ static result gather_users(join *j, uint32_t plane)
         const uint32_t b = all[low].brush;
         if (!has_plane(j, b, plane)) continue;
         if (!buffer_append(&j->users, &b, 1)) return RESULT_NO_MEMORY;
-        for (uint32_t i = first[b]; i < first[b + 1]; ++i)
-            if (fabs(plane_height(j->draft->in->planes, 2 * plane, c[i].position)) < ON_PLANE && !buffer_append(&j->own, c[i].position, 1))
-                return RESULT_NO_MEMORY;
+        for (uint32_t i = first[b]; i < first[b + 1]; ++i) {
+            const double *p = c[i].position;
+            const placed made = {{p[0], p[1], p[2]}, 0, &j->place};
+            if (fabs(plane_height(j->draft->in->planes, 2 * plane, p)) < ON_PLANE && !buffer_append(&j->own, &made, 1)) return RESULT_NO_MEMORY;
+        }
     }
-    if (j->own.count) qsort(j->own.items, j->own.count, sizeof(double[3]), compare_points);
+    if (j->own.count) qsort(j->own.items, j->own.count, sizeof(placed), compare_points);
     return RESULT_OK;
 }
 
@@ -269,13 +271,13 @@ static result gather_anchors(join *j, const near_spot *spot)
     const uint32_t *of_plane = j->of_plane.items;
     for (size_t i = 0; i < j->of_plane.count; ++i)
         if (&spots[of_plane[i]] != spot && !add_anchor(j, &spots[of_plane[i]].target)) return RESULT_NO_MEMORY;
-    const double(*own)[3] = (const double(*)[3])j->own.items;
+    const placed *own = j->own.items;
     double before = INFINITY;
     for (int round = 0; round < ANCHORS_MOST / 2; ++round) {
         size_t best = j->own.count;
         double most = -1;
         for (size_t i = 0; i < j->own.count; ++i) {
-            const double far = far_squared(own[i], spot->target.at);
+            const double far = steady(far_squared(own[i].at, spot->target.at));
             if (far < before - 1 && far > most) {
                 most = far;
                 best = i;
@@ -285,10 +287,10 @@ static result gather_anchors(join *j, const near_spot *spot)
         before = most;
         for (size_t i = 0; i < j->own.count; ++i) { // all that lie as far
             grid_point p;
-            if (fabs(far_squared(own[i], spot->target.at) - most) > 1) continue;
+            if (fabs(steady(far_squared(own[i].at, spot->target.at)) - most) > 1) continue;
             uint32_t step = j->draft->grid;
-            while (step > 1 && !rounded_to(j, own[i], step, &p)) step = step % 2 ? 1 : step / 2;
-            if (rounded_to(j, own[i], step, &p) && !add_anchor(j, &p)) return RESULT_NO_MEMORY;
+            while (step > 1 && !rounded_to(j, own[i].at, step, &p)) step = step % 2 ? 1 : step / 2;
+            if (rounded_to(j, own[i].at, step, &p) && !add_anchor(j, &p)) return RESULT_NO_MEMORY;
         }
     }
     return RESULT_OK;
@@ -310,10 +312,10 @@ static double height_of(const unit_row *u, const double p[3])
 
 static int stays_near(const join *j, const cull_wide_plane *p)
 {
-    const double(*own)[3] = (const double(*)[3])j->own.items;
+    const placed *own = j->own.items;
     const unit_row u = unit_of(p);
     for (size_t i = 0; i < j->own.count; ++i)
-        if (height_of(&u, own[i]) > j->draft->weld) return 0;
+        if (steady(height_of(&u, own[i].at)) > j->draft->weld) return 0;
     return 1;
 }
 
@@ -339,7 +341,7 @@ static double bits_of(const cull_wide_plane *p)
 {
     double bits = log2(1 + fabs(cull_wide_to_double(p->offset)));
     for (int k = 0; k < 3; ++k) bits += log2(1 + (double)cull_magnitude(p->normal[k]));
-    return bits;
+    return steady(bits);
 }
 
 // The plane through the spot's target and two anchors on which the most meets; 0: none is better than what is.
@@ -356,7 +358,7 @@ static int find_plane(const join *j, uint32_t plane, const near_spot *spot, cull
             const uint32_t score = score_of(j, &made);
             const double bits = bits_of(&made);
             if (score < most || (score == most && (!found || bits > least_bits))) continue;
-            if (score == most && bits == least_bits && compare_planes(&made, out) >= 0) continue;
+            if (score == most && bits == least_bits && compare_plane_places(&j->place, &made, out) >= 0) continue;
             found = 1;
             most = score;
             least_bits = bits;
@@ -410,12 +412,15 @@ static result replace_in_all(join *j, uint32_t plane, plane_ref to)
     const uint32_t *users = j->users.items;
     replace_verdict verdict = REPLACE_DONE;
     result done = RESULT_OK;
+    uint32_t refusals = 0; // of all brushes, so that their order leaves no trace
     for (size_t i = 0; i < j->users.count && done == RESULT_OK; ++i) {
         done = replace_in(j, users[i], plane, to, input_try_planes, &verdict);
         const refusal again = {plane, to, users[i]};
         if (done != RESULT_OK || verdict == REPLACE_DONE) continue;
-        return buffer_append(&j->refused, &again, 1) ? RESULT_OK : RESULT_NO_MEMORY;
+        if (!buffer_append(&j->refused, &again, 1)) return RESULT_NO_MEMORY;
+        refusals++;
     }
+    if (done != RESULT_OK || refusals) return done;
     for (size_t i = 0; i < j->users.count && done == RESULT_OK; ++i) done = replace_in(j, users[i], plane, to, input_replace_planes, &verdict);
     j->changed += done == RESULT_OK;
     return done;
@@ -440,6 +445,7 @@ static result join_once(join *j)
 {
     uint32_t apart;
     j->changed = 0;
+    j->place = place_order_of(j->draft->brushes.items, j->draft->brushes.count);
     result done = meeting_set_find(&j->meetings, &apart);
     if (done != RESULT_OK || apart == 0) return done;
     done = find_spots(j);
@@ -464,7 +470,7 @@ result input_join_corners(input_draft *d)
               .order = buffer_make(memory, sizeof(placed)),
               .spots = buffer_make(memory, sizeof(near_spot)),
               .of_plane = buffer_make(memory, sizeof(uint32_t)),
-              .own = buffer_make(memory, sizeof(double[3])),
+              .own = buffer_make(memory, sizeof(placed)),
               .all_users = buffer_make(memory, sizeof(plane_user)),
               .users = buffer_make(memory, sizeof(uint32_t)),
               .anchors = buffer_make(memory, sizeof(grid_point)),

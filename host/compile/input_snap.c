@@ -3,11 +3,13 @@
 // SPDX-License-Identifier: MIT
 // Invariant: a group's corners are all within the weld of each other, never a chain; the order is by place, not by file.
 #include "input.h"
+#include "input_order.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 enum { ROUNDS_MOST = 8 };
+static const double SAME_AREA = 1e-12; // of an area's square: what doubles err by
 
 typedef struct near_group {
     double middle[3]; // sum of its corners, then the grid point
@@ -17,26 +19,20 @@ typedef struct near_group {
 
 typedef struct snap {
     input_draft *draft;
-    buffer order;  // uint32_t: corners by place
+    place_order place;
+    buffer order;  // placed: corners by place
     buffer group;  // uint32_t: of each corner; UINT32_MAX none
     buffer groups; // near_group
     buffer places; // uint32_t: the nearest group of each corner of the shape
     buffer planes; // plane_ref
 } snap;
 
-static int compare_doubles(double a, double b)
-{
-    return a < b ? -1 : a > b;
-}
+typedef struct placed { double position[3]; const place_order *order; } placed;
 
 static int compare_corners(const void *left, const void *right)
 {
-    const shape_corner *a = left, *b = right;
-    for (int k = 0; k < 3; ++k) {
-        const int order = compare_doubles(a->position[k], b->position[k]);
-        if (order) return order;
-    }
-    return 0;
+    const placed *a = left, *b = right;
+    return compare_places(a->order, a->position, b->position);
 }
 
 static int within(const double a[3], const double b[3], double reach)
@@ -47,7 +43,7 @@ static int within(const double a[3], const double b[3], double reach)
 }
 
 // Corners in order of place; each joins the first group all of which it is near to.
-static result find_groups(snap *s, shape_corner *sorted, size_t count)
+static result find_groups(snap *s, const placed *sorted, size_t count)
 {
     s->group.count = s->groups.count = 0;
     uint32_t *group = buffer_push(&s->group, count);
@@ -71,7 +67,7 @@ static result find_groups(snap *s, shape_corner *sorted, size_t count)
     }
     near_group *groups = s->groups.items;
     for (size_t g = 0; g < s->groups.count; ++g)
-        for (int k = 0; k < 3; ++k) groups[g].middle[k] = nearbyint(groups[g].middle[k] / groups[g].count);
+        for (int k = 0; k < 3; ++k) groups[g].middle[k] = nearbyint(steady(groups[g].middle[k] / groups[g].count));
     return RESULT_OK;
 }
 
@@ -131,20 +127,24 @@ static plane_ref refit(snap *s, const shape_face *face, const near_group *fixed)
                 const double part = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
                 area += part * part;
             }
-            if (area <= most || !cull_wide_plane_through(at, first, second, &best)) continue;
+            cull_wide_plane made;
+            if (area < most * (1 - SAME_AREA) || !cull_wide_plane_through(at, first, second, &made)) continue;
+            if (area <= most * (1 + SAME_AREA) && most > 0 && compare_plane_places(&s->place, &made, &best) >= 0) continue;
             most = area;
+            best = made;
         }
     return most > 0 ? plane_table_add(s->draft->in->planes, &best) : PLANE_NONE;
 }
 
-// The group to be snapped that the face meets: `only`, or with NULL the first that is more than one point.
+// The group to be snapped that the face meets: `only`, or with NULL the first by place that is more than one point.
 static const near_group *group_at(const snap *s, const shape_face *face, const near_group *only)
 {
+    const near_group *first = NULL;
     for (uint32_t i = 0; i < face->corner_count; ++i) {
         const near_group *g = group_of(s, face->first_corner + i);
-        if (g == only || (!only && g->wide)) return g;
+        if (g == only || (!only && g->wide && (!first || g < first))) first = g;
     }
-    return NULL;
+    return first;
 }
 
 // All faces that meet in the group through its grid point; those that have no two other corners to go through keep theirs.
@@ -180,8 +180,12 @@ static result snap_once(snap *s, uint32_t brush, replace_verdict *out)
     brush_shape *shape = &s->draft->shape;
     if (shape_close_pairs(shape, s->draft->in->planes, s->draft->weld) == 0) return RESULT_OK;
     s->order.count = 0;
-    shape_corner *sorted = buffer_append(&s->order, shape->corners.items, shape->corners.count);
+    placed *sorted = buffer_push(&s->order, shape->corners.count);
     if (!sorted) return RESULT_NO_MEMORY;
+    for (size_t i = 0; i < shape->corners.count; ++i) {
+        const double *p = ((const shape_corner *)shape->corners.items)[i].position;
+        sorted[i] = (placed){{p[0], p[1], p[2]}, &s->place};
+    }
     qsort(sorted, shape->corners.count, sizeof *sorted, compare_corners);
     if (find_groups(s, sorted, shape->corners.count) != RESULT_OK || place_corners(s) != RESULT_OK) return RESULT_NO_MEMORY;
     result done = snap_group(s, brush, NULL, out);
@@ -196,7 +200,8 @@ result input_snap_corners(input_draft *d)
 {
     const allocator *memory = d->faces.memory;
     snap s = {.draft = d,
-              .order = buffer_make(memory, sizeof(shape_corner)),
+              .place = place_order_of(d->brushes.items, d->brushes.count),
+              .order = buffer_make(memory, sizeof(placed)),
               .group = buffer_make(memory, sizeof(uint32_t)),
               .groups = buffer_make(memory, sizeof(near_group)),
               .places = buffer_make(memory, sizeof(uint32_t)),

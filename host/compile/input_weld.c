@@ -1,7 +1,7 @@
 // Weld of nearly equal planes of different brushes: where walls meant to be one stand a rounding apart, the gap between them
 // would be a zone of its own.
 // SPDX-License-Identifier: MIT
-// Invariant: what may become one is in input_cluster.c; planes are ordered by their numbers, never by their place in the
+// Invariant: what may become one is in input_cluster.c; planes are ordered as in input_order.h, never by their place in the
 // file; a brush that would change its faces keeps its plane.
 #include "input_cluster.h"
 

@@ -1,5 +1,6 @@
 // Convex less convex in one plane, cut along the edge that leaves most uncut, and the brushes' order of adding and taking.
 // SPDX-License-Identifier: MIT
+#include "input_order.h"
 #include "portals.h"
 
 #include <math.h>
@@ -8,11 +9,14 @@ typedef enum air_side { AIR_FRONT, AIR_BEHIND } air_side; // of the polygon's pl
 typedef enum air_state { STATE_AIR, STATE_SOLID } air_state;
 typedef struct air_piece { uint32_t polygon; air_state state; } air_piece;
 
+static const double UNLIKELY_TIE = 1.37; // whole areas are not half way between two floats then
+
 typedef struct air_clip {
     surface *s;
     buffer *pieces;           // air_piece
     const plane_ref *planes;  // of the body that is taken away, those on the polygon's plane left out
     uint32_t plane_count;
+    place_order order;
     air_state to;             // what lies inside the body becomes
 } air_clip;
 
@@ -52,8 +56,10 @@ static int next_plane(const air_clip *c, uint32_t polygon, plane_ref *out)
         const cut_result place = surface_classify(c->s, polygon, c->planes[i]);
         if (place == CUT_FRONT) return -1;
         if (place != CUT_BOTH) continue;
-        const double area = area_in_front(c->s, polygon, c->planes[i]);
-        if (area <= most) continue;
+        const double area = (float)(area_in_front(c->s, polygon, c->planes[i]) * UNLIKELY_TIE); // far coarser than it errs
+        if (area < most) continue;
+        const cull_wide_plane *plane = plane_table_canonical(c->s->planes, c->planes[i]);
+        if (area == most && compare_plane_places(&c->order, plane, plane_table_canonical(c->s->planes, *out)) >= 0) continue;
         most = area;
         *out = c->planes[i];
     }
@@ -148,7 +154,7 @@ result portal_air(surface *s, const compile_input *in, uint32_t polygon, const u
     buffer pieces = buffer_make(s->memory, sizeof(air_piece));
     const air_piece whole = {polygon, STATE_AIR};
     const plane_ref own = surface_polygon_at(s, polygon)->plane;
-    air_clip c = {.s = s, .pieces = &pieces};
+    air_clip c = {.s = s, .pieces = &pieces, .order = place_order_of(in->brushes, in->brush_count)};
     result r = buffer_append(&pieces, &whole, 1) ? RESULT_OK : RESULT_NO_MEMORY;
     for (int side = 0; side < 2 && r == RESULT_OK; ++side) {
         r = clip_side(&c, in, own, side ? AIR_BEHIND : AIR_FRONT, brushes, count);

@@ -1,5 +1,6 @@
 // Slabs to polygons: the mid-plane between the sides, clipped by the air, less what an earlier portal of the plane has.
 // SPDX-License-Identifier: MIT
+#include "input_order.h"
 #include "portals.h"
 
 #include "../core/box_tree.h"
@@ -9,25 +10,66 @@
 typedef struct portal_build {
     const compile_input *in;
     portal_set *out;
-    buffer near_by, parts, rest; // brushes; polygons
+    buffer near_by, parts, rest; // brushes in the order of `brushes`; polygons
     tree_box *boxes;             // of structure brushes
-    uint32_t *brushes, brush_count;
+    uint32_t *brushes, brush_count; // see compare_keys
     box_tree tree;
 } portal_build;
+
+// Only a change between adding and subtracting binds brushes to the order of the file; between two of those, place does.
+typedef struct brush_key {
+    uint32_t brush, phase;
+    double at[3], size; // of its box: middle, and the sum of its sides
+    const place_order *order;
+} brush_key;
+
+static int compare_keys(const void *left, const void *right)
+{
+    const brush_key *a = left, *b = right;
+    if (a->phase != b->phase) return a->phase < b->phase ? -1 : 1;
+    if (a->size != b->size) return a->size > b->size ? -1 : 1;
+    const int order = compare_places(a->order, a->at, b->at);
+    return order ? order : a->brush < b->brush ? -1 : 1;
+}
+
+static result order_brushes(portal_build *b, const allocator *memory)
+{
+    const compile_input *in = b->in;
+    const place_order order = place_order_of(in->brushes, in->brush_count);
+    brush_key *keys = memory_alloc(memory, in->brush_count, sizeof(*keys));
+    if (!keys) return RESULT_NO_MEMORY;
+    brush_kind last = BRUSH_ADD;
+    uint32_t phase = 0;
+    for (uint32_t i = 0; i < in->brush_count; ++i) {
+        const compile_brush *brush = &in->brushes[i];
+        if (brush->role != BRUSH_STRUCTURE) continue;
+        phase += brush->kind != last;
+        last = brush->kind;
+        brush_key key = {.brush = i, .phase = phase, .order = &order};
+        for (int k = 0; k < 3; ++k) {
+            key.at[k] = ((double)brush->min[k] + brush->max[k]) / 2;
+            key.size += (double)brush->max[k] - brush->min[k];
+        }
+        keys[b->brush_count++] = key;
+    }
+    if (b->brush_count > 1) qsort(keys, b->brush_count, sizeof(*keys), compare_keys);
+    for (uint32_t i = 0; i < b->brush_count; ++i) b->brushes[i] = keys[i].brush;
+    memory_free(memory, keys, in->brush_count, sizeof(*keys));
+    return RESULT_OK;
+}
 
 static result open_tree(portal_build *b, const allocator *memory)
 {
     b->boxes = memory_alloc(memory, b->in->brush_count, sizeof(*b->boxes));
     b->brushes = memory_alloc(memory, b->in->brush_count, sizeof(*b->brushes));
     if (!b->boxes || !b->brushes) return RESULT_NO_MEMORY;
-    for (uint32_t i = 0; i < b->in->brush_count; ++i) {
-        const compile_brush *brush = &b->in->brushes[i];
-        if (brush->role != BRUSH_STRUCTURE) continue;
+    if (order_brushes(b, memory) != RESULT_OK) return RESULT_NO_MEMORY;
+    for (uint32_t i = 0; i < b->brush_count; ++i) {
+        const compile_brush *brush = &b->in->brushes[b->brushes[i]];
         for (int k = 0; k < 3; ++k) {
-            b->boxes[b->brush_count].min[k] = brush->min[k] - 1.0;
-            b->boxes[b->brush_count].max[k] = brush->max[k] + 1.0;
+            b->boxes[i].min[k] = brush->min[k] - 1.0;
+            b->boxes[i].max[k] = brush->max[k] + 1.0;
         }
-        b->brushes[b->brush_count++] = i;
     }
     return b->brush_count ? box_tree_open(b->boxes, b->brush_count, memory, &b->tree) : RESULT_OK;
 }
@@ -85,8 +127,10 @@ static result find_brushes(portal_build *b, uint32_t polygon)
     box_walk walk;
     box_walk_start(&walk, &b->tree, &box);
     for (uint32_t i; box_walk_next(&walk, &i);)
-        if (!buffer_append(&b->near_by, &b->brushes[i], 1)) return RESULT_NO_MEMORY;
+        if (!buffer_append(&b->near_by, &i, 1)) return RESULT_NO_MEMORY;
     if (b->near_by.count) qsort(b->near_by.items, b->near_by.count, sizeof(uint32_t), ascending);
+    uint32_t *near_by = b->near_by.items;
+    for (size_t i = 0; i < b->near_by.count; ++i) near_by[i] = b->brushes[near_by[i]];
     return RESULT_OK;
 }
 
