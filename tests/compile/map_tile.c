@@ -188,7 +188,7 @@ static void choose_step(tiling *t, const char *text)
     const tile nowhere = {0};
     for (word w = next_word(t, &at); w.length && t->is_sound; w = next_word(t, &at)) at = put_entity(t, at, &nowhere, 0);
     const double x = t->max[0] - t->min[0], y = t->max[1] - t->min[1], wider = x > y ? x : y;
-    t->step = 64 * (long)ceil((wider + GAP) / 64);
+    if (wider >= 0 && wider <= 2 * LIMIT) t->step = 64 * (long)ceil((wider + GAP) / 64); // else there is no map, or too wide a one
 }
 
 tile_fault map_tile(const char *text, size_t size, unsigned side, char **out, size_t *out_size)
