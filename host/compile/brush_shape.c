@@ -42,19 +42,25 @@ static int push_corner(const plane_table *t, buffer *loop, const shape_corner *c
     return 1;
 }
 
-// The square in which the face's plane cuts the cube's four sides along its steepest axis; it may stand out at the two others.
-static int start_loop(brush_shape *s, const plane_table *t, const plane_ref cube[6], plane_ref face)
+void brush_shape_square(const plane_table *t, const plane_ref cube[6], plane_ref plane, plane_ref edges[4])
 {
-    const cull_wide_plane p = plane_table_get(t, face);
+    const cull_wide_plane p = plane_table_get(t, plane);
     int axis = 0;
     for (int i = 1; i < 3; ++i)
         if (cull_magnitude(p.normal[i]) > cull_magnitude(p.normal[axis])) axis = i;
     const int a = (axis + 1) % 3, b = (axis + 2) % 3;
     const plane_ref up[4] = {cube[2 * a], cube[2 * b], cube[2 * a + 1], cube[2 * b + 1]}; // counterclockwise seen from the axis' end
+    for (int i = 0; i < 4; ++i) edges[i] = up[p.normal[axis] > 0 ? i : (4 - i) % 4];
+}
+
+// The square may stand out at the cube's two other sides.
+static int start_loop(brush_shape *s, const plane_table *t, const plane_ref cube[6], plane_ref face)
+{
+    plane_ref edges[4];
+    brush_shape_square(t, cube, face, edges);
     s->loop.count = 0;
     for (int i = 0; i < 4; ++i) {
-        const int forward = p.normal[axis] > 0, at = forward ? i : (4 - i) % 4, before = forward ? (at + 3) % 4 : (at + 1) % 4;
-        const shape_corner c = {.planes = {face, up[before], up[at]}, .edge = up[at]};
+        const shape_corner c = {.planes = {face, edges[(i + 3) % 4], edges[i]}, .edge = edges[i]};
         if (!push_corner(t, &s->loop, &c)) return 0;
     }
     return 1;

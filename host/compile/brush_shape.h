@@ -34,6 +34,8 @@ brush_shape brush_shape_make(const allocator *memory);
 void brush_shape_free(brush_shape *s);
 // The planes of a cube round the grid, twice as wide, from which faces are cut. 0: out of memory.
 int brush_shape_cube(plane_table *t, plane_ref cube[6]);
+// The cube's four sides along the plane's steepest axis, in the order in which the square's edges go counterclockwise from its front.
+void brush_shape_square(const plane_table *t, const plane_ref cube[6], plane_ref plane, plane_ref edges[4]);
 // planes: fronts outside, each at most once. The shape of an earlier call is overwritten.
 shape_fault brush_shape_cut(brush_shape *s, const plane_table *t, const plane_ref cube[6], const plane_ref *planes, uint32_t count);
 // One face alone, its corners in s->loop. Of equal planes the first has the face; a plane and its opposite leave nothing.

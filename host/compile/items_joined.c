@@ -136,8 +136,13 @@ static result pair_try(joining *j, size_t a, size_t b, int *done)
     j->scratch.count = 0;
     if (!buffer_append(&j->scratch, points_of(j, &g[a]), g[a].count) || !buffer_append(&j->scratch, points_of(j, &g[b]), g[b].count)) return RESULT_NO_MEMORY;
     joined both = {.area = g[a].area + g[b].area};
+    const size_t before = j->points.count;
     const result r = hull_make(j, &both);
-    if (r != RESULT_OK || area_of(points_of(j, &both), both.count) > LARGER_MOST * both.area) return r;
+    if (r != RESULT_OK) return r;
+    if (area_of(points_of(j, &both), both.count) > LARGER_MOST * both.area) {
+        j->points.count = before;
+        return RESULT_OK;
+    }
     g[b].is_gone = 1;
     g[a] = both;
     *done = 1;

@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "rooms.h"
 
+#include "steady.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-static const double ORDER_STEPS = 1048576; // 2^20 a doubling, as for merging: sizes nearer than that tie
-
-enum { CENTRES = 3 };
-
-typedef struct wall_key { int64_t area, places[CENTRES]; uint32_t wall; } wall_key;
+typedef struct wall_key { int64_t area, places[STEADY_CENTRES]; uint32_t wall; } wall_key;
 
 typedef struct room_build {
     const compile_input *in;
@@ -67,11 +65,6 @@ static result walls_take(room_build *b)
 
 // ---- Their order ----
 
-static int64_t rounded_log(double x)
-{
-    return x > 0 ? llround(log2(x) * ORDER_STEPS) : INT64_MIN / 2;
-}
-
 static void middle_of(const polygon_edge *edges, uint32_t count, double out[3])
 {
     for (int k = 0; k < 3; ++k) {
@@ -84,44 +77,28 @@ static int by_size(const void *a, const void *b)
 {
     const wall_key *x = a, *y = b;
     if (x->area != y->area) return x->area > y->area ? -1 : 1;
-    for (int i = 0; i < CENTRES; ++i)
-        if (x->places[i] != y->places[i]) return x->places[i] > y->places[i] ? -1 : 1;
+    const int places = steady_places_compare(x->places, y->places);
+    if (places) return places;
     return (x->wall > y->wall) - (x->wall < y->wall);
 }
 
-// Weighed by area, its square and its cube: a symmetric pair is told apart by what is not.
-static void centres_of(const room_build *b, double out[CENTRES][3])
-{
-    const cell_wall *w = b->walls.items;
-    double weights[CENTRES] = {0};
-    memset(out, 0, CENTRES * sizeof *out);
-    for (size_t i = 0; i < b->walls.count; ++i) {
-        const polygon_edge *edges = (polygon_edge *)b->edges.items + w[i].shape.first;
-        const double area = polygon_area(edges, w[i].shape.count);
-        double middle[3], weight = 1;
-        middle_of(edges, w[i].shape.count, middle);
-        for (int c = 0; c < CENTRES; ++c) {
-            weights[c] += weight *= area;
-            for (int k = 0; k < 3; ++k) out[c][k] += weight * middle[k];
-        }
-    }
-    for (int c = 0; c < CENTRES; ++c)
-        for (int k = 0; k < 3 && weights[c] > 0; ++k) out[c][k] /= weights[c];
-}
-
-static wall_key key_of(const room_build *b, uint32_t wall, const double centres[CENTRES][3])
+static wall_key key_of(const room_build *b, uint32_t wall, steady_centres *centres)
 {
     const cell_wall *w = (cell_wall *)b->walls.items + wall;
     const polygon_edge *edges = (polygon_edge *)b->edges.items + w->shape.first;
-    wall_key out = {.area = rounded_log(polygon_area(edges, w->shape.count)), .wall = wall};
+    const double area = polygon_area(edges, w->shape.count);
     double middle[3];
     middle_of(edges, w->shape.count, middle);
-    for (int c = 0; c < CENTRES; ++c) {
-        double square = 0;
-        for (int k = 0; k < 3; ++k) square += (middle[k] - centres[c][k]) * (middle[k] - centres[c][k]);
-        out.places[c] = rounded_log(square);
-    }
-    return out;
+    steady_centres_add(centres, area, middle);
+    return (wall_key){.area = steady_log(area), .wall = wall};
+}
+
+static void place_key(const room_build *b, const steady_centres *centres, wall_key *key)
+{
+    const cell_wall *w = (cell_wall *)b->walls.items + key->wall;
+    double middle[3];
+    middle_of((polygon_edge *)b->edges.items + w->shape.first, w->shape.count, middle);
+    steady_places(centres, middle, key->places);
 }
 
 // Large walls first, then those far from the middle of all: a turned or moved map has the same order.
@@ -132,9 +109,9 @@ static result walls_order(room_build *b)
     wall_key *keys = memory_alloc(b->memory, count, sizeof *keys);
     cell_wall *sorted = memory_alloc(b->memory, count, sizeof *sorted);
     if (keys && sorted && count) {
-        double centres[CENTRES][3];
-        centres_of(b, centres);
-        for (size_t i = 0; i < count; ++i) keys[i] = key_of(b, (uint32_t)i, (const double(*)[3])centres);
+        steady_centres centres = {0};
+        for (size_t i = 0; i < count; ++i) keys[i] = key_of(b, (uint32_t)i, &centres);
+        for (size_t i = 0; i < count; ++i) place_key(b, &centres, &keys[i]);
         qsort(keys, count, sizeof *keys, by_size);
         for (size_t i = 0; i < count; ++i) sorted[i] = w[keys[i].wall];
         memcpy(b->walls.items, sorted, count * sizeof *sorted);

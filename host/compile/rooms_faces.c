@@ -17,22 +17,17 @@ typedef struct facing {
     buffer arrived[2]; // sunk: on the front side, and from there on the other
 } facing;
 
-// The square in which a plane cuts the cube's sides along its steepest axis.
 static result whole_plane(facing *f, plane_ref plane, plane_polygon *out)
 {
-    const cull_wide_plane p = plane_table_get(f->p->planes, plane);
-    int axis = 0;
-    for (int i = 1; i < 3; ++i)
-        if (cull_magnitude(p.normal[i]) > cull_magnitude(p.normal[axis])) axis = i;
-    const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-    const plane_ref up[4] = {f->cube[2 * a], f->cube[2 * b], f->cube[2 * a + 1], f->cube[2 * b + 1]};
+    plane_ref edges[4];
+    brush_shape_square(f->p->planes, f->cube, plane, edges);
     *out = (plane_polygon){plane, (uint32_t)f->p->edges.count, 4};
     polygon_edge *to = buffer_push(&f->p->edges, 4);
     if (!to) return RESULT_NO_MEMORY;
-    for (int i = 0; i < 4; ++i) {
-        const int forward = p.normal[axis] > 0, at = forward ? i : (4 - i) % 4, before = forward ? (at + 3) % 4 : (at + 1) % 4;
-        const plane_ref meet[3] = {plane, up[before], up[at]};
-        to[i] = (polygon_edge){.plane = up[at]};
+    for (uint32_t i = 0; i < 4; ++i) to[i] = (polygon_edge){.plane = edges[i]};
+    for (uint32_t i = 0; i < 4; ++i) {
+        plane_ref meet[3];
+        polygon_corner(plane, to, 4, i, meet);
         plane_table_position(f->p->planes, meet, to[i].start);
     }
     return RESULT_OK;

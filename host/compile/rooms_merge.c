@@ -5,14 +5,12 @@
 #include "rooms_merge.h"
 
 #include "rooms_links.h"
+#include "steady.h"
 
 #include <math.h>
 #include <string.h>
 
 static const double WALLS_THAT_COUNT = 20; // walls at which a room's openness falls by the root of two
-static const double ORDER_STEPS = 1048576;  // 2^20 a doubling: scores nearer than that tie
-
-enum { CENTRES = 3 };
 
 typedef struct room { double volume; uint32_t walls; } room;
 
@@ -24,20 +22,15 @@ typedef struct merging {
     uint32_t *above; // by cell: what it was merged into, itself if it stands
     link_set links;
     buffer heap;     // candidate
-    double centres[CENTRES][3]; // of all faces, weighed by area, its square and its cube: a symmetric pair is told apart by what is not
+    steady_centres centres; // of all faces
 } merging;
 
 typedef struct candidate {
-    int64_t score, area, places[CENTRES]; // rounded logarithms; places: of the squared distance from each centre
+    int64_t score, area, places[STEADY_CENTRES]; // see steady.h
     uint32_t link, version;
 } candidate;
 
 // ---- Scores ----
-
-static int64_t rounded_log(double x)
-{
-    return x > 0 ? llround(log2(x) * ORDER_STEPS) : INT64_MIN / 2;
-}
 
 static double openness(const merging *m, const room_link *l)
 {
@@ -49,20 +42,12 @@ static double openness(const merging *m, const room_link *l)
     return l->area / (size * size) * sqrt(l->plane_count) / sqrt(1 + walls / WALLS_THAT_COUNT);
 }
 
-static double distance_squared(const double centre[3], const room_link *l)
-{
-    double square = 0;
-    for (int k = 0; k < 3; ++k) square += (l->moment[k] / l->area - centre[k]) * (l->moment[k] / l->area - centre[k]);
-    return square;
-}
-
 static int comes_first(const candidate *a, const candidate *b)
 {
     if (a->score != b->score) return a->score > b->score;
     if (a->area != b->area) return a->area > b->area;
-    for (int i = 0; i < CENTRES; ++i)
-        if (a->places[i] != b->places[i]) return a->places[i] > b->places[i];
-    return a->link < b->link;
+    const int places = steady_places_compare(a->places, b->places);
+    return places ? places < 0 : a->link < b->link;
 }
 
 // ---- The heap ----
@@ -71,8 +56,10 @@ static result heap_push(merging *m, uint32_t link)
 {
     const room_link *l = link_at(&m->links, link);
     const double open = openness(m, l);
-    candidate made = {.score = isinf(open) ? INT64_MAX : rounded_log(open), .area = rounded_log(l->area), .link = link, .version = l->version};
-    for (int i = 0; i < CENTRES; ++i) made.places[i] = rounded_log(distance_squared(m->centres[i], l));
+    candidate made = {.score = isinf(open) ? INT64_MAX : steady_log(open), .area = steady_log(l->area), .link = link, .version = l->version};
+    double middle[3];
+    for (int k = 0; k < 3; ++k) middle[k] = l->moment[k] / l->area;
+    steady_places(&m->centres, middle, made.places);
     if (!buffer_append(&m->heap, &made, 1)) return RESULT_NO_MEMORY;
     candidate *c = m->heap.items;
     size_t at = m->heap.count - 1;
@@ -130,7 +117,7 @@ static uint32_t room_of(merging *m, uint32_t cell)
 
 static int is_enough(const merging *m, const candidate *best)
 {
-    const int few = m->limits->rooms ? m->map->room_count <= m->limits->rooms : best->score < rounded_log(m->limits->openness);
+    const int few = m->limits->rooms ? m->map->room_count <= m->limits->rooms : best->score < steady_log(m->limits->openness);
     return few && m->links.plane_total <= m->limits->portals;
 }
 
@@ -159,19 +146,12 @@ static link_face measure(const cell_set *cells, const cell_face *f)
 static result links_take(merging *m)
 {
     const cell_face *f = m->cells->faces.items;
-    double weights[CENTRES] = {0};
     result r = RESULT_OK;
     for (size_t i = 0; i < m->cells->faces.count && r == RESULT_OK; ++i) {
         const link_face face = measure(m->cells, &f[i]);
-        double weight = 1;
-        for (int c = 0; c < CENTRES; ++c) {
-            weights[c] += weight *= face.area;
-            for (int k = 0; k < 3; ++k) m->centres[c][k] += weight * face.middle[k];
-        }
+        steady_centres_add(&m->centres, face.area, face.middle);
         r = links_add(&m->links, f[i].cells, f[i].shape.plane >> 1, &face);
     }
-    for (int c = 0; c < CENTRES; ++c)
-        for (int k = 0; k < 3 && weights[c] > 0; ++k) m->centres[c][k] /= weights[c];
     for (uint32_t i = 0; i < link_count(&m->links) && r == RESULT_OK; ++i) r = heap_push(m, i);
     return r;
 }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "zone_trace.h"
 
+#include "steady.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -30,7 +32,7 @@ static void vote(place_votes *v, uint32_t region)
     v->votes[i]++;
 }
 
-// A region's size for ties, rounded far coarser than doubles err: a turned map gives the same.
+// A region's size, for ties.
 static int64_t region_extent(const zone_trace *t, uint32_t region)
 {
     double sum = 0;
@@ -43,13 +45,14 @@ static int64_t region_extent(const zone_trace *t, uint32_t region)
             sum += sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) + (b[2] - a[2]) * (b[2] - a[2]));
         }
     }
-    return sum > 0 ? llround(log2(sum) * 1048576) : 0;
+    return steady_log(sum);
 }
 
 static uint32_t elected(const zone_trace *t, const place_votes *v)
 {
     uint32_t best = REGION_SOLID, most = 0;
-    int64_t extent = 0;
+    int64_t extent = INT64_MIN;
+    if (v->count == 1) return v->regions[0]; // nearly always: the extents are dear
     for (uint32_t i = 0; i < v->count; ++i) {
         if (v->votes[i] < most) continue;
         const int64_t own = region_extent(t, v->regions[i]);

@@ -74,7 +74,7 @@ is 'are said' "$(counter "$json" front_walls_only | tr '\n' ' ')" '1 0 '
 if [ -f "$plugins/testmore.culler.so" ]; then
   for latency in 0 2; do
     PORTCULLIS_PLUGIN_PATH=$plugins run renderer --culler frustum --culler testmore --culler 'testmore[wait=1]' --culler testpicture \
-      --culler testorder --culler frustum+testportal --swap 5 --query-latency $latency
+      --culler testorder --culler frustum+portal --swap 5 --query-latency $latency
     is "latency $latency: exit code" "$code" 0
     is "latency $latency: missed pixels" "$(same "$json" missed_pixels)" 0
     is "latency $latency: missed items" "$(same "$json" missed_items)" 0
@@ -100,7 +100,7 @@ export PORTCULLIS_PLUGIN_PATH
 picture() { # SCENE VIEW words
   scene=$1 view=$2
   shift 2
-  "$portcullis" render "$scene" --views path:walk --view "$view" --culler frustum+testportal --size 320x180 -o "$@"
+  "$portcullis" render "$scene" --views path:walk --view "$view" --culler frustum+portal --size 320x180 -o "$@"
 }
 for view in 0 20 37 59; do
   picture "$rooms" "$view" "$work/whole.png"
@@ -114,7 +114,7 @@ is 'what stands beside a portal is cut' "$(cmp -s "$work/whole.png" "$work/cut.p
 missed() { # SCENE words: what the error picture of view 0 says is missed
   scene=$1
   shift
-  "$portcullis" render "$scene" --views path:walk --view 0 --mode error --culler frustum+testportal --size 320x180 -o "$work/error.png" "$@" 2>&1 |
+  "$portcullis" render "$scene" --views path:walk --view 0 --mode error --culler frustum+portal --size 320x180 -o "$work/error.png" "$@" 2>&1 |
     sed -n 's/^.* \([0-9]*\) missed pixels$/\1/p'
 }
 is 'rectangles cut nothing that is seen' "$(missed "$rooms" --scissor)" 0

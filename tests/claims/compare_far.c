@@ -12,7 +12,7 @@
 #include <string.h>
 
 enum { WIDTH = 320, HEIGHT = 180, PIXELS = WIDTH * HEIGHT, CHAINS = 2, NO_GL = 77 };
-static const char *const chains[CHAINS] = {"frustum", "frustum+testportal"};
+static const char *const chains[CHAINS] = {"frustum", "frustum+portal"};
 
 typedef struct seen { // of one scene, view after view
     uint32_t *pictures;     // PIXELS a view

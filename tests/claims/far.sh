@@ -21,7 +21,7 @@ move() { # KIND SIZE open|closed STEP STEP_OF_TRUTH
     is "$near, $metres m: zones, pictures, cracks" "$code" 0
     every "$5" "$work/$near" walk
     awk -v by="$metres" '{ $1 = sprintf("%.6f", $1 + by); $3 = sprintf("%.6f", $3 - by); print }' "$work/walk.views" >"$work/far.views"
-    measure "$near, $metres m" "$far" "$work/far.views" 320x180 --culler scene --culler frustum+testportal --culler none --swap 10
+    measure "$near, $metres m" "$far" "$work/far.views" 320x180 --culler scene --culler frustum+portal --culler none --swap 10
   done
 }
 

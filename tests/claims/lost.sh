@@ -57,7 +57,7 @@ cat >"$work/nested.json" <<EOF
 EOF
 
 for kind in overlap stray empty nested; do
-  measure "$kind" "$work/$kind.json" "$work/random.views" 320x180 --culler none --culler frustum --culler frustum+testportal --culler brute --swap 10
+  measure "$kind" "$work/$kind.json" "$work/random.views" 320x180 --culler none --culler frustum --culler frustum+portal --culler brute --swap 10
   warned=$(grep -c 'warning' "$work/table")
   case $kind in
     overlap | nested) true_that "$kind: a warning" "$warned > 0" ;;

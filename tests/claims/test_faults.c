@@ -41,10 +41,10 @@ static uint32_t times_behind_gap(const char *chain, double low_m)
 static void what_shows_through_a_gap_thinner_than_a_pixel_is_drawn(void **state)
 {
     (void)state;
-    static const char *const chains[] = {"brute", "frustum+flood", "frustum+testportal", "none+testportal"};
+    static const char *const chains[] = {"brute", "frustum+flood", "frustum+portal", "none+portal"};
     for (int i = 0; i < 4; i++)
         for (int k = 0; k < 40; k++) assert_int_equal(times_behind_gap(chains[i], 1.35 + 0.0071 * k), 1); // between pixels' centres and on them
-    assert_int_equal(times_behind_gap("frustum+testportal", 2.9), 0); // from there the line of sight goes over it
+    assert_int_equal(times_behind_gap("frustum+portal", 2.9), 0); // from there the line of sight goes over it
 }
 
 // ---- Doors ----
@@ -75,7 +75,7 @@ static int same(const picture *a, const picture *b)
 
 static void mixed_open(stage *s, uint32_t shift)
 {
-    static const char *const some[] = {"scene", "frustum+testportal", "brute", "none", "testmore"};
+    static const char *const some[] = {"scene", "frustum+portal", "brute", "none", "testmore"};
     const chain_spec **by_zone = calloc(s->scene->zone_count, sizeof *by_zone);
     assert_non_null(by_zone);
     for (uint32_t zone = 0; zone < s->scene->zone_count; zone++) by_zone[zone] = stage_chain_of(s, some[(zone + shift) % 5], zone);

@@ -65,7 +65,7 @@ static void check(const char *kind, uint64_t size)
     for (int i = 0; i < 2; i++) {
         sight x = {.stage = &s, .g = g, .r = &r, .path = paths[i]};
         check_chain(&x, "frustum+flood");
-        check_chain(&x, "frustum+testportal");
+        check_chain(&x, "frustum+portal");
     }
     renderer_close(g);
     stage_free(&s);

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 enum { SWAP_VIEWS = 10 };
-static const char *const chains[] = {"scene", "frustum", "none", "frustum+flood", "brute", "frustum+testportal", "testmore", "testorder", "brute+testfilter[keep=all,movers=1]"};
+static const char *const chains[] = {"scene", "frustum", "none", "frustum+flood", "brute", "frustum+portal", "testmore", "testorder", "brute+testfilter[keep=all,movers=1]"};
 enum { CHAINS = sizeof chains / sizeof *chains };
 
 typedef struct counts { uint64_t swaps, calls_in_swaps, items, movers; } counts;

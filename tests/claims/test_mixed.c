@@ -22,7 +22,7 @@ static void reach(stage *s, const camera_path *path, uint32_t step, crossers how
     assert_non_null(by_zone);
     for (uint32_t zone = 0; zone < zones; zone++) {
         const int narrows = how == ALL_NARROW || (how == MIXED && random_below(&seed, 2));
-        by_zone[zone] = stage_chain(s, narrows ? "brute+testportal" : "brute");
+        by_zone[zone] = stage_chain(s, narrows ? "brute+portal" : "brute");
     }
     stage_open(s, &(stage_world){by_zone, 0});
     for (uint32_t v = 0; v < path->count; v += step, reached += zones) {

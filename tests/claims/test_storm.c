@@ -52,7 +52,7 @@ static void storm_open(storm *s)
     s->random = 7;
     stage_make(&s->stage, "rooms", ROOMS);
     const chain_spec *by_zone[ROOMS + 1];
-    const char *const some[] = {"brute", "frustum+testportal", "none", "testmore"};
+    const char *const some[] = {"brute", "frustum+portal", "none", "testmore"};
     assert_true(s->stage.scene->zone_count <= ROOMS + 1);
     for (uint32_t zone = 0; zone <= ROOMS; zone++) by_zone[zone] = stage_chain(&s->stage, some[zone % 4]);
     stage_open(&s->stage, &(stage_world){by_zone, MOVERS});

@@ -14,11 +14,11 @@ look() { # KIND SIZE STEP PICTURE
     views=$work/$path.views
     [ "$3" -ne 1 ] || views=path:$path
     measure "$1 $2 $path, doors open" "$work/$1$2.json" "$views" "$4" --culler scene --culler frustum --culler none --culler frustum+flood \
-      --culler brute --culler frustum+testportal --swap 10
+      --culler brute --culler frustum+portal --swap 10
     true_that "$1 $2 $path: zones were swapped" "$(counter "$json" swaps | tail -n 1) > 0"
     true_that "$1 $2 $path: a crosser narrows" "$(counter "$json" zones | sed -n 7p) <= $(counter "$json" zones | sed -n 3p)"
     is "$1 $2 $path: brute draws what frustum does" "$(counter "$json" polygons_drawn | sed -n '2p;5p' | sort -u | wc -l)" 1
-    measure "$1 $2 $path, doors shut" "$work/$1$2.json" "$views" "$4" --culler scene --culler frustum+testportal --swap 10 --doors shut
+    measure "$1 $2 $path, doors shut" "$work/$1$2.json" "$views" "$4" --culler scene --culler frustum+portal --swap 10 --doors shut
   done
 }
 

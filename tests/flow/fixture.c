@@ -177,9 +177,10 @@ void maze_end(maze *m)
     memset(m->open, 1, m->scene->portal_count + 1);
     for (uint32_t z = 0; z < zones; z++) {
         const cull_plugin *plugin = cull_entry.plugins[0];
+        const char *const values[] = {plugin->descriptor->options[0].fallback};
         cull_built built = {0};
         assert_int_equal(zone_data_open(&(zone_data_request){m->scene, z, 0}, memory, &m->zones[z]), RESULT_OK);
-        assert_int_equal(plugin->create(&test_host, NULL, &m->cullers[z]), CULL_OK);
+        assert_int_equal(plugin->create(&test_host, values, &m->cullers[z]), CULL_OK);
         assert_int_equal(plugin->build(m->cullers[z], &m->zones[z].zone, NULL, &built), CULL_OK);
         assert_int_equal(plugin->open(m->cullers[z], &m->queries[z]), CULL_OK);
     }

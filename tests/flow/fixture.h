@@ -1,4 +1,4 @@
-// Scenes of zones and portals for tests of the flow, put together by the scene builder, with the crosser testportal at hand.
+// Scenes of zones and portals for tests of the flow, put together by the scene builder, with the crosser portal at hand.
 // SPDX-License-Identifier: MIT
 #ifndef PORTCULLIS_TESTS_FLOW_FIXTURE_H
 #define PORTCULLIS_TESTS_FLOW_FIXTURE_H
@@ -21,7 +21,7 @@ typedef struct maze {
     zone_data *zones;
     flow *flow;
     uint8_t *open;          // by portal; all 1 at first
-    cull_culler **cullers;  // testportal, by zone
+    cull_culler **cullers;  // portal, by zone
     cull_query **queries;
     uint32_t item_zone;     // zones that have their triangle
 } maze;

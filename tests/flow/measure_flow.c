@@ -1,4 +1,4 @@
-// Not a test: what a flow costs. measure_flow [ROOMS A SIDE], 32 by default: an open grid, flood and testportal.
+// Not a test: what a flow costs. measure_flow [ROOMS A SIDE], 32 by default: an open grid, flood and portal.
 // SPDX-License-Identifier: MIT
 #define _POSIX_C_SOURCE 200809L
 #include "tests/flow/fixture.h"

@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *const chains[] = {"brute+testportal", "testmore", "brute+testfilter[keep=all,movers=1]", "testpicture+testfilter", "none", "testorder+testfilter[walk=1]", NULL};
+static const char *const chains[] = {"brute+portal", "testmore", "brute+testfilter[keep=all,movers=1]", "testpicture+testfilter", "none", "testorder+testfilter[walk=1]", NULL};
 
 static void cull_some(site *s, const site_grid *g, world_view *v, uint32_t frames)
 {

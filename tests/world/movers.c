@@ -37,7 +37,7 @@ static void movers_that_come_go_jump_and_grow_are_those_of_a_loop_over_all(void 
     enum { MOST = 400 };
     uint32_t numbers[MOST], count = 0, seen = 0;
     const char *chains[ROOMS + 1];
-    for (uint32_t i = 0; i <= ROOMS; i++) chains[i] = i % 3 ? "brute" : "frustum+testportal";
+    for (uint32_t i = 0; i <= ROOMS; i++) chains[i] = i % 3 ? "brute" : "frustum+portal";
     site_begin(&s, 0);
     assert_int_equal(site_make_grid(&s, &rooms), RESULT_OK);
     world_view *v = open_world(&s, &(site_world){"brute", chains, MOST});

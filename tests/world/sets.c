@@ -12,7 +12,7 @@ static const site_grid rooms = {.wide = 5, .deep = 4, .items = 900, .movers = 60
 enum { ROOMS = 20, VIEWS = 150 };
 
 static const char *const exact[] = {"brute", "frustum", "none", "brute+flood", "brute+testfilter[keep=right]", "frustum+flood", "none+testfilter[keep=right]",
-                                   "brute+testportal", "frustum+testportal", "none+testportal", "frustum+testfilter[keep=right]+testportal"};
+                                   "brute+portal", "frustum+portal", "none+portal", "frustum+testfilter[keep=right]+portal"};
 enum { EXACT = sizeof exact / sizeof *exact };
 
 static void mixed(const char **chains, uint32_t count, uint64_t seed)
@@ -143,7 +143,7 @@ static void an_item_in_two_zones_seen_through_two_portals_is_drawn_once(void **s
     static site_driver driver;
     pair p;
     begin_pair(&s, &p, 2);
-    end_pair(&s, "brute+testportal", "brute");
+    end_pair(&s, "brute+portal", "brute");
     world_view *v = open_view(&s);
     const camera c = site_camera(eye_left, to_right);
     frame_input q = site_input(&c, 1);

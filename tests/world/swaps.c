@@ -22,7 +22,7 @@ static world_view *open_grid(site *s, const char *chain)
 static void swapped_in_every_frame_through_all_chains_the_set_is_that_of_a_fresh_view(void **state)
 {
     (void)state;
-    static const char *const all[] = {"none", "brute", "frustum", "brute+testportal", "testmore", "frustum[backface=0]", "testorder", "testpicture", "none+testfilter[keep=right]",
+    static const char *const all[] = {"none", "brute", "frustum", "brute+portal", "testmore", "frustum[backface=0]", "testorder", "testpicture", "none+testfilter[keep=right]",
                                       "brute+testfilter[keep=all,movers=1]", "testorder+testfilter[walk=1,keep=all]", "frustum+flood"};
     enum { CHAINS = sizeof all / sizeof *all };
     static site s;

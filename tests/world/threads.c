@@ -64,7 +64,7 @@ static void *work(void *argument)
 // The heap's own: the counting allocator is one thread's.
 static void open_grid(site *s)
 {
-    static const char *const some[] = {"brute+testportal", "frustum", "testmore", "brute+testfilter[keep=all,movers=1]", "testorder+testfilter[walk=1]", "none"};
+    static const char *const some[] = {"brute+portal", "frustum", "testmore", "brute+testfilter[keep=all,movers=1]", "testorder+testfilter[walk=1]", "none"};
     const char *chains[ROOMS + 1];
     for (uint32_t i = 0; i <= ROOMS; i++) chains[i] = some[i % 6];
     site_begin(s, 0);
