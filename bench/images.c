@@ -52,6 +52,21 @@ static result mark_missed(strategy *s, truth *t, uint32_t view, report *r, uint8
     return done;
 }
 
+// In letters, and as a note.
+static void write_counts(strategy *s, const strategy_view *view, report *r)
+{
+    enum { DARK = (int)0xe0000000, LIGHT = (int)0xffffffff, TEXT_BYTES = 256, LETTERS_WIDE = 80 * 8 };
+    const view_counts counts = strategy_count(s, &view->set);
+    char text[TEXT_BYTES];
+    snprintf(text, sizeof text, "%.100s\n%llu polygons of %u   zones %u of %u", s->chains->name, (unsigned long long)counts.polygons,
+             s->q->scene->polygon_count, view->stats.zones, s->q->scene->zone_count);
+    report_note(r, "%s: %llu polygons of %u, zones %u of %u", s->chains->name, (unsigned long long)counts.polygons, s->q->scene->polygon_count,
+                view->stats.zones, s->q->scene->zone_count);
+    const uint32_t scale = s->q->width_px / LETTERS_WIDE > 1 ? s->q->width_px / LETTERS_WIDE : 1;
+    renderer_overlay_text(s->g, &(overlay_text){text, 8 + scale, 8 + scale, scale, (uint32_t)DARK});
+    renderer_overlay_text(s->g, &(overlay_text){text, 8, 8, scale, (uint32_t)LIGHT});
+}
+
 result picture_of(strategy *s, truth *t, const picture_request *q, report *r, uint8_t *rgba, uint64_t *out_missed)
 {
     strategy_view view;
@@ -61,6 +76,7 @@ result picture_of(strategy *s, truth *t, const picture_request *q, report *r, ui
                                       .records = is_error ? RECORD_DRAWS : RECORD_NOTHING};
     result done = strategy_restart(s, r);
     if (done == RESULT_OK) done = strategy_run_view(s, &request, r, &view);
+    if (done == RESULT_OK && q->caption == CAPTION_COUNTS) write_counts(s, &view, r);
     if (done == RESULT_OK) done = renderer_read(s->g, rgba, r);
     if (done == RESULT_OK && q->kind == PICTURE_ERROR) done = mark_missed(s, t, q->view, r, rgba, out_missed);
     return done;

@@ -6,11 +6,13 @@
 #include "strategy.h"
 
 typedef enum picture_kind { PICTURE_DRAWN, PICTURE_ERROR } picture_kind;
+typedef enum picture_caption { CAPTION_NONE, CAPTION_COUNTS } picture_caption; // COUNTS: the strategy and what it drew, in letters
 typedef struct picture_request {
     uint32_t view;
     render_mode mode; // of PICTURE_DRAWN
     picture_kind kind;
     render_scissor scissor;
+    picture_caption caption;
 } picture_request;
 
 // Culls and draws one view into rgba (width * height * 4, top row first). The strategy must have a renderer. t may be
