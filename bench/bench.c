@@ -107,7 +107,7 @@ static result find_truths(run *b)
 
 // ---- Counting ----
 
-static void add_counts(bench_row *row, const strategy *s, const strategy_view *v)
+static view_counts add_counts(bench_row *row, const strategy *s, const strategy_view *v)
 {
     const view_counts c = strategy_count(s, &v->set);
     row->polygons_drawn += (double)c.polygons;
@@ -125,10 +125,16 @@ static void add_counts(bench_row *row, const strategy *s, const strategy_view *v
     row->portal_merges += v->stats.portal_merges;
     row->limits_hit += v->stats.limits_hit;
     row->stalls += v->stats.stalls;
+    return c;
 }
 
-static void add_truth(bench_row *row, const truth_view *t)
+static void add_truth(bench_row *row, const truth_view *t, const view_counts *drawn)
 {
+    if (t->polygons_visible >= BENCH_HARD_POLYGONS) {
+        row->hard_views++;
+        row->hard_drawn += (double)drawn->polygons;
+        row->hard_visible += (double)t->polygons_visible;
+    }
     row->polygons_visible += (double)t->polygons_visible;
     row->polygons_items += (double)t->polygons_items;
     row->items_visible += (double)t->items_visible;
@@ -142,6 +148,7 @@ static void close_row(run *b, bench_row *row, const strategy *s)
     const double views = b->q->path->count;
     row->excess = row->polygons_visible > 0 ? row->polygons_drawn / row->polygons_visible : 0;
     row->excess_items = row->polygons_items > 0 ? row->polygons_drawn / row->polygons_items : 0;
+    row->hard_excess = row->hard_visible > 0 ? row->hard_drawn / row->hard_visible : 0;
     double *const means[] = {&row->polygons_drawn, &row->polygons_visible, &row->polygons_items, &row->triangles_drawn, &row->items_drawn,
                              &row->items_visible,  &row->runs, &row->floor, &row->movers_drawn, &row->movers_visible, &row->queries,
                              &row->steps, &row->draw_calls, &row->state_changes, &row->zones, &row->volumes, &row->crossings};
@@ -156,6 +163,7 @@ static void close_row(run *b, bench_row *row, const strategy *s)
     row->front_walls_only = s->walls != WALLS_BOTH_SIDES;
     row->build_ms = s->build_ms;
     row->index_bytes = s->index_bytes;
+    row->figures = s->figures;
     row->indices_built = s->indices_built;
 }
 
@@ -240,7 +248,7 @@ static result run_pass(run *b, uint32_t pass, uint32_t k)
                                           .records = has_truth && is_compared(b, k, v) ? RECORD_DRAWS : RECORD_NOTHING};
         result done = strategy_run_view(s, &request, b->r, &view);
         if (done != RESULT_OK) return done;
-        if (counts) add_counts(row, s, &view);
+        const view_counts drawn = counts ? add_counts(row, s, &view) : (view_counts){0};
         faults += view.faults;
         if (pass != PASS_COUNTS) {
             const size_t at = (size_t)pass * b->q->path->count + v;
@@ -248,7 +256,7 @@ static result run_pass(run *b, uint32_t pass, uint32_t k)
             s->gl_ms[at] = view.gl_ms;
         }
         if (!has_truth) continue;
-        if (pass == 0) add_truth(row, (const truth_view *)truth_of(b, k)->views.items + v);
+        if (pass == 0) add_truth(row, (const truth_view *)truth_of(b, k)->views.items + v, &drawn);
         done = judge_view(b, k, v, &missed);
         if (done != RESULT_OK) return done;
     }

@@ -6,6 +6,7 @@
 #include "../host/core/world.h"
 #include "../host/import/views.h"
 #include "../host/render/render.h"
+#include "figures.h"
 #include "truth.h"
 
 typedef enum bench_truth { BENCH_TRUTH, BENCH_NO_TRUTH } bench_truth;
@@ -33,6 +34,8 @@ typedef struct bench_request {
     const char *images; // folder for pictures, NULL: none
 } bench_request;
 
+enum { BENCH_HARD_POLYGONS = 40 }; // visible in a view: from there on it is a hard one, beside walls that fill the picture
+
 // One strategy's counters: as the JSON names them. Means are per view, sums over the path.
 typedef struct bench_row {
     const char *name;
@@ -40,6 +43,7 @@ typedef struct bench_row {
     double polygons_drawn, polygons_visible, polygons_items, triangles_drawn, items_drawn, items_visible, runs, floor;
     double movers_drawn, movers_visible, queries, steps, draw_calls, state_changes;
     double excess, excess_items, build_ms;
+    double hard_excess, hard_drawn, hard_visible; // of the views that see at least BENCH_HARD_POLYGONS; the last two are sums over them
     uint64_t missed_pixels, missed_items, missed_pixels_max;
     double zones, volumes, crossings; // zones reached, volumes they are seen through, portals tried
     double mover_update_ns;           // CPU time to move one mover on its path; 0 where none moves
@@ -51,7 +55,8 @@ typedef struct bench_row {
     uint64_t broken_items;     // of missed_items: those that a chain of a zone listing them had promised
     uint64_t picture_differs;  // pixels, over all views looked at, where what was drawn is not what D shows: see drawn.h
     uint32_t pictures_compared; // views looked at
-    uint32_t worst_view;
+    uint32_t worst_view, hard_views;
+    bench_figures figures;
 } bench_row;
 
 typedef struct bench_result {

@@ -94,6 +94,13 @@ static json_t *head_of(const bench_result *b, const bench_request *q, const benc
                      "time_unit", "ns");
 }
 
+static json_t *figures_of(const bench_figures *figures)
+{
+    json_t *all = json_object();
+    for (uint32_t i = 0; i < figures->count; ++i) json_object_set_new(all, figures->list[i].name, number_of(figures->list[i].value));
+    return all;
+}
+
 static json_t *entry_of(const bench_result *b, const bench_request *q, const bench_labels *labels, const bench_row *row)
 {
     json_t *entry = head_of(b, q, labels, row);
@@ -112,6 +119,7 @@ static json_t *entry_of(const bench_result *b, const bench_request *q, const ben
         {"polygons_visible", row->polygons_visible}, {"polygons_items", row->polygons_items}, {"items_visible", row->items_visible},
         {"floor", row->floor},
         {"excess", ratio_by(row->excess, row->polygons_visible)}, {"excess_items", ratio_by(row->excess_items, row->polygons_items)},
+        {"hard_views", row->hard_views}, {"hard_excess", ratio_by(row->hard_excess, row->hard_visible)},
         {"missed_pixels", (double)row->missed_pixels},
         {"missed_items", (double)row->missed_items}, {"broken_items", (double)row->broken_items}, {"picture_differs", (double)row->picture_differs},
         {"pictures_compared", row->pictures_compared}, {"missed_pixels_max", (double)row->missed_pixels_max},
@@ -125,6 +133,7 @@ static json_t *entry_of(const bench_result *b, const bench_request *q, const ben
     set_counters(entry, of_movers, 1, MEASURED);
     set_counters(entry, of_swaps, 1, MEASURED);
     set_counters(entry, last, sizeof last / sizeof *last, MEASURED);
+    if (row->figures.count) json_object_set_new(entry, "figures", figures_of(&row->figures));
     return entry;
 }
 

@@ -68,7 +68,8 @@ result strategy_attach(strategy *s, renderer *g, report *r)
     memory_free(memory, zones, zone_count, sizeof *zones);
     if (done != RESULT_OK) return done;
     s->g = g;
-    return chains_tell_slots(s, r);
+    const result told = chains_tell_pieces(s, r);
+    return told == RESULT_OK ? chains_tell_slots(s, r) : told;
 }
 
 result strategy_restart(strategy *s, report *r)

@@ -61,6 +61,7 @@ typedef struct strategy {
     strategy_times times;    // since it was opened
     double build_ms;         // of the chains it was opened with
     size_t index_bytes;
+    bench_figures figures;  // of these chains' indices
     uint32_t words, order_count, indices_built;
 } strategy;
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "strategy_parts.h"
 
+#include "../host/core/pieces.h"
+
 #include <string.h>
 
 enum { TESTS_RESERVED_MOST = 65536 }; // for all zones of a view together, unless one alone asks for more
@@ -168,6 +170,7 @@ result chains_open(strategy *s, report *r)
         done = take_chain(s, z, r);
         s->build_ms += c->build_ms;
         s->index_bytes += c->index_bytes;
+        figures_add_chain(&s->figures, c);
         s->indices_built++;
     }
     return done;
@@ -195,6 +198,18 @@ result chains_tell_slots(strategy *s, report *r)
     return done;
 }
 
+result chains_tell_pieces(strategy *s, report *r)
+{
+    const allocator *memory = s->q->services->memory;
+    const uint32_t zone_count = s->q->scene->zone_count;
+    const cull_pieces **pieces = memory_alloc(memory, zone_count, sizeof *pieces);
+    if (!pieces) return report_no_memory(r, s->q->scene->path);
+    for (uint32_t z = 0; z < zone_count; ++z) pieces[z] = chain_pieces(world_chain(s->world, z), r);
+    const result done = render_layout_pieces(s->layout, pieces, r);
+    memory_free(memory, pieces, zone_count, sizeof *pieces);
+    return done;
+}
+
 static result swap_zone(strategy *s, uint32_t zone, const chain_spec *spec, report *r)
 {
     const double start = thread_cpu_ns();
@@ -218,5 +233,6 @@ result chains_turn(strategy *s, uint32_t view, report *r)
     if (done == RESULT_OK) s->turn = turn;
     if (done != RESULT_OK || !s->layout) return done;
     done = chains_tell_slots(s, r);
+    if (done == RESULT_OK) done = chains_tell_pieces(s, r);
     return done == RESULT_OK ? renderer_reserve(s->g, strategy_tests(s), r) : done;
 }

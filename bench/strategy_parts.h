@@ -12,6 +12,7 @@ void chains_close(strategy *s);
 // All zones to what they have in that view, with layout and slots. Does nothing where that is so already.
 result chains_turn(strategy *s, uint32_t view, report *r);
 result chains_tell_slots(strategy *s, report *r); // to layout and renderer; there must be a layout
+result chains_tell_pieces(strategy *s, report *r); // of see-through items, to the layout
 
 // ---- strategy_driver.c: the renderer behind the frame ----
 frame_driver driver_of(strategy *s);

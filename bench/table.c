@@ -95,6 +95,14 @@ static int put_row(buffer *text, const bench_row *row, const columns *c)
     return good && put_marks(text, row);
 }
 
+static int put_figures(buffer *text, const bench_row *row)
+{
+    if (!row->figures.count) return 1;
+    int good = put(text, "%s: built in %.2f ms", row->name, row->build_ms);
+    for (uint32_t i = 0; i < row->figures.count; ++i) good = good && put(text, ", %s %.10g", row->figures.list[i].name, row->figures.list[i].value);
+    return good && put(text, "\n");
+}
+
 static int put_all(buffer *text, const bench_result *b, const bench_request *q, const bench_labels *labels)
 {
     char n[2][16];
@@ -105,6 +113,7 @@ static int put_all(buffer *text, const bench_result *b, const bench_request *q, 
     if (b->gl_used) good = good && put(text, "drawn by %s\n", b->gl_name);
     good = good && put_head(text, &c);
     for (uint32_t i = 0; i < b->row_count; ++i) good = good && put_row(text, &b->rows[i], &c);
+    for (uint32_t i = 0; i < b->row_count; ++i) good = good && put_figures(text, &b->rows[i]);
     return good;
 }
 

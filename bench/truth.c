@@ -31,10 +31,14 @@ result truth_open(const truth_request *q, const allocator *memory, report *r, tr
     out->item_polygons = memory_alloc_zeroed(memory, all_items(s), sizeof(uint32_t));
     out->floor_bits = memory_alloc_zeroed(memory, (all_items(s) + 31) / 32, sizeof(uint32_t));
     const size_t words = (all_items(s) + 31) / 32;
-    if (q->walls != WALLS_BOTH_SIDES) out->shown_bits = memory_alloc(memory, words, sizeof(uint32_t));
+    if (q->walls != WALLS_BOTH_SIDES) {
+        out->shown_bits = memory_alloc(memory, words, sizeof(uint32_t));
+        out->edge_bits = memory_alloc(memory, words, sizeof(uint32_t));
+    }
     if (q->walls == WALLS_MIXED) out->front_bits = memory_alloc(memory, words, sizeof(uint32_t));
     if (out->front_bits) memset(out->front_bits, 0xff, words * sizeof(uint32_t));
-    const int has_bits = (q->walls == WALLS_BOTH_SIDES || out->shown_bits) && (q->walls != WALLS_MIXED || out->front_bits) && out->floor_bits;
+    const int has_walls = q->walls == WALLS_BOTH_SIDES || (out->shown_bits && out->edge_bits);
+    const int has_bits = has_walls && (q->walls != WALLS_MIXED || out->front_bits) && out->floor_bits;
     const int has_lookups = out->triangle_polygon && out->polygon_item && out->polygon_stamp && out->item_pixels && out->item_polygons;
     if (!has_bits || !has_lookups || id_picture_open(s, q->width_px, q->height_px, memory, &out->picture) != RESULT_OK) {
         truth_close(out);
@@ -55,6 +59,7 @@ void truth_close(truth *t)
     memory_free(memory, t->item_polygons, all_items(t->scene), sizeof(uint32_t));
     memory_free(memory, t->floor_bits, (all_items(t->scene) + 31) / 32, sizeof(uint32_t));
     memory_free(memory, t->front_bits, (all_items(t->scene) + 31) / 32, sizeof(uint32_t));
+    memory_free(memory, t->edge_bits, (all_items(t->scene) + 31) / 32, sizeof(uint32_t));
     memory_free(memory, t->shown_bits, (all_items(t->scene) + 31) / 32, sizeof(uint32_t));
     if (t->picture.triangles) id_picture_free(&t->picture, memory);
     buffer_free(&t->items);
@@ -121,13 +126,45 @@ static uint64_t count_floor(const truth *t)
     return count;
 }
 
+// Takes what is edge on from the picture's owners.
+static void disown_edges(truth *t)
+{
+    id_picture *p = &t->picture;
+    const size_t count = (size_t)p->width_px * p->height_px;
+    for (size_t i = 0; i < count; ++i) {
+        const uint32_t triangle = p->triangles[i];
+        if (!triangle || triangle > t->triangle_count) continue;
+        const uint32_t item = t->polygon_item[t->triangle_polygon[triangle - 1]];
+        if (t->edge_bits[item / 32] >> (item % 32) & 1) p->triangles[i] = 0;
+    }
+}
+
+// Leaves in shown_bits what counts. Some wall is edge on: 1.
+static int judge_walls(truth *t, const camera *c)
+{
+    uint32_t any = 0;
+    const walls_view view = {c, t->picture.width_px, t->picture.height_px};
+    walls_in_front(t->scene, &view, t->shown_bits, t->edge_bits);
+    for (uint32_t w = 0; w < (all_items(t->scene) + 31) / 32; ++w) {
+        if (t->front_bits) t->shown_bits[w] |= ~t->front_bits[w];
+        t->edge_bits[w] &= ~t->shown_bits[w];
+        any |= t->edge_bits[w];
+    }
+    return any != 0;
+}
+
 result truth_draw(truth *t, renderer *g, const id_request *q, report *r)
 {
     id_request shown = *q;
-    if (t->shown_bits) walls_in_front(t->scene, q->camera, t->shown_bits);
-    for (uint32_t w = 0; t->front_bits && w < (all_items(t->scene) + 31) / 32; ++w) t->shown_bits[w] |= ~t->front_bits[w];
+    if (!t->shown_bits) return renderer_id_picture(g, &shown, r, &t->picture);
+    const uint32_t words = (all_items(t->scene) + 31) / 32;
+    const int has_edges = judge_walls(t, q->camera);
+    for (uint32_t w = 0; w < words; ++w) t->shown_bits[w] |= t->edge_bits[w];
     shown.item_bits = t->shown_bits;
-    return renderer_id_picture(g, &shown, r, &t->picture);
+    const result done = renderer_id_picture(g, &shown, r, &t->picture);
+    for (uint32_t w = 0; w < words; ++w) t->shown_bits[w] &= ~t->edge_bits[w];
+    if (done == RESULT_OK && has_edges) disown_edges(t);
+    return done;
 }
 
 result truth_add_view(truth *t, renderer *g, const camera *c, report *r)

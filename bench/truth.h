@@ -26,7 +26,8 @@ typedef struct truth {
     uint32_t *triangle_polygon, *polygon_item; // lookups
     uint32_t *polygon_stamp, *item_pixels, *item_polygons;
     uint32_t *floor_bits;
-    uint32_t *shown_bits; // items that the pictures hold; NULL: all
+    uint32_t *shown_bits; // items that count; NULL: all
+    uint32_t *edge_bits;  // with shown_bits: others that the pictures hold and that hide what is behind them, but own nothing: see walls.h
     uint32_t *front_bits; // WALLS_MIXED: items judged by their fronts, for strategy_judge to say; all at first; otherwise NULL
     uint32_t front_turn;  // that front_bits are of, + 1; 0: none
     uint32_t stamp, triangle_count;

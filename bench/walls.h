@@ -11,8 +11,14 @@
 typedef enum walls { WALLS_BOTH_SIDES, WALLS_FRONT_ONLY, WALLS_MIXED } walls;
 
 walls walls_of_chain(const cull_descriptor *select, const chain_spec *spec);
-// Sets the bit of every item and mover but of one-sided walls none of whose triangles faces the eye. words: (item_count +
-// mover_count + 31) / 32.
-void walls_in_front(const scene *s, const camera *c, uint32_t *item_bits);
+// shown: the bit of every item and mover but of one-sided walls none of whose triangles faces the eye. edge_on: of those, the
+// ones whose back is thinner on the picture than what the rasterizer rounds by. No pixel is theirs, and nobody sees anything
+// through them: what meets along such a wall overlaps in front of it by less than the rounding, and would part. Both: (item_count +
+// mover_count + 31) / 32 words.
+typedef struct walls_view {
+    const camera *camera;
+    uint32_t width_px, height_px;
+} walls_view;
+void walls_in_front(const scene *s, const walls_view *v, uint32_t *shown, uint32_t *edge_on);
 
 #endif

@@ -31,12 +31,29 @@ static inline cull_point cull_cut_between(cull_point inside, double height, cull
 static inline uint32_t cull_polygon_clip(const cull_point *in, uint32_t count, cull_cut cut, cull_point *out, uint32_t capacity)
 {
     uint32_t written = 0;
+    const double first = count > 0 ? cull_cut_height(cut, in[0]) : 0;
+    double ha = first;
     for (uint32_t i = 0; i < count; i++) {
         const cull_point a = in[i], b = in[i + 1 < count ? i + 1 : 0];
-        const double ha = cull_cut_height(cut, a), hb = cull_cut_height(cut, b);
+        const double hb = i + 1 < count ? cull_cut_height(cut, b) : first;
         if (ha >= 0 && written < capacity) out[written++] = a;
         if (ha > 0 && hb < 0 && written < capacity) out[written++] = cull_cut_between(a, ha, b, hb);
         if (ha < 0 && hb > 0 && written < capacity) out[written++] = cull_cut_between(b, hb, a, ha);
+        ha = hb;
+    }
+    return written;
+}
+
+// The same where the points' heights above the cut are known.
+static inline uint32_t cull_polygon_clip_at(const cull_point *in, const double *heights, uint32_t count, cull_point *out, uint32_t capacity)
+{
+    uint32_t written = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t next = i + 1 < count ? i + 1 : 0;
+        const double ha = heights[i], hb = heights[next];
+        if (ha >= 0 && written < capacity) out[written++] = in[i];
+        if (ha > 0 && hb < 0 && written < capacity) out[written++] = cull_cut_between(in[i], ha, in[next], hb);
+        if (ha < 0 && hb > 0 && written < capacity) out[written++] = cull_cut_between(in[next], hb, in[i], ha);
     }
     return written;
 }

@@ -350,6 +350,64 @@ typedef struct cull_ray {
     uint32_t (*box)(const cull_culler *, const cull_box *, cull_run *runs, uint32_t max_runs);                 // [any]
 } cull_ray;
 
+// Extension "cull.figures/1" of a built culler: cull_figures, numbers about its index for a person and the bench, valid and
+// unchanged from build to destroy. A name is a word of [a-z0-9_] with its unit, if any, at its end.
+#define CULL_EXT_FIGURES "cull.figures/1"
+typedef uint32_t cull_figure_sort;
+enum { CULL_FIGURE_SUM = 0, CULL_FIGURE_MAX = 1 }; // what the figures of several zones come to
+typedef struct cull_figure {
+    const char *name;
+    double value;
+    cull_figure_sort sort;
+    uint32_t reserved;
+} cull_figure;
+typedef struct cull_figures { const cull_figure *figures; uint32_t count, reserved; } cull_figures;
+
+// Extension "cull.pieces/1" of a built culler: items cut into flat convex pieces that can be put in an exact order of depth,
+// for what is see-through; cull_pieces, valid and unchanged from build to destroy. item is in the zone's order after the
+// culler's own cull_built.order. An item has no piece (it is drawn by other means), or its pieces cover it and overlap
+// nowhere. A loop is convex, has 3 to 65,536 points, and runs as the item's triangles do there: counterclockwise from the front.
+// No limit, no allocation and no failure: the order is written over the numbers asked about, in the caller's memory.
+#define CULL_EXT_PIECES "cull.pieces/1"
+typedef struct cull_piece {
+    uint32_t item;
+    uint32_t first_point, point_count; // in cull_pieces.points
+    uint32_t reserved;
+} cull_piece;
+typedef uint32_t cull_depth_order;
+enum { CULL_FAR_FIRST = 1, CULL_NEAR_FIRST = 2 };
+typedef struct cull_piece_request {
+    double eye[4];     // relative to the zone's origin; w 1: a point; w 0: the direction towards an infinitely far viewer
+    uint32_t *numbers; // in: pieces, each once, in any order; out: the same in order. Far first: what stands later hides or
+                       // tints what stands before, never the other way round, along every ray from the eye. Pieces that
+                       // no ray meets at two depths stand in any order, the same for the same eye and the same set
+    void *scratch;     // cull_pieces.scratch_size bytes, 64-byte aligned, of undefined content
+    uint32_t count;    // of numbers
+    cull_depth_order depth_order;
+} cull_piece_request;
+typedef struct cull_pieces cull_pieces;
+struct cull_pieces {
+    const cull_piece *pieces;
+    const double (*points)[3]; // metres from the zone's origin
+    size_t scratch_size;
+    uint32_t piece_count, point_count;
+    void (*order)(const cull_pieces *, const cull_piece_request *); // [any] no two calls share numbers or scratch
+};
+
+// Extension "cull.sight/1" of a built culler that selects: what of a volume gets through the zone to a portal, past what stands in
+// between. A crosser narrows by the portal's polygon alone; a select that knows what hides what is asked first, and the
+// crosser narrows each part of its answer. Of no effect in a chain without crosser.
+#define CULL_EXT_SIGHT "cull.sight/1"
+#define CULL_MAX_PARTS 16u
+typedef struct cull_sight {
+    // [step] As cull_plugin.cross. Parts 0, 1, 2 ... are asked for in turn: volumes that together hold all of `in` that gets
+    // to the portal, up to CULL_CROSS_NONE: no more of them; at most CULL_MAX_PARTS. CULL_CROSS_SAME: all of `in` may get there, and no
+    // part is asked for after it. Planes are guarded as those of cull_plugin.cross.
+    // `in` and its planes stay where they are while its portals are asked about, one after the other.
+    cull_crossing (*part)(cull_query *, const cull_view *, const cull_volume *in, uint32_t portal, uint32_t part, cull_plane *planes,
+                          uint32_t *plane_count);
+} cull_sight;
+
 // The one exported symbol. Data, not code: reading what a library offers runs nothing of it.
 typedef struct cull_entry_v0 { uint32_t abi, plugin_count; const cull_plugin *const *plugins; } cull_entry_v0;
 #define CULL_ENTRY_SYMBOL "cull_entry"

@@ -11,6 +11,7 @@
 #include "box.h"
 
 #include <math.h>
+#include <string.h>
 
 // The signed distance of a point, positive inside.
 static inline float cull_plane_height(cull_plane plane, cull_vec3 p)
@@ -69,6 +70,44 @@ typedef struct cull_guard {
     double radius;             // the largest absolute coordinate of any box that will be judged
 } cull_guard;
 
+// The least float above a finite one below FLT_MAX.
+static inline float cull_float_above(float f)
+{
+    uint32_t bits;
+    memcpy(&bits, &f, sizeof bits);
+    if (f > 0) bits++;
+    else if (f < 0) bits--;
+    else bits = 1;
+    memcpy(&f, &bits, sizeof f);
+    return f;
+}
+
+// A direction as a plane has it: made once, it serves planes of all zones.
+typedef struct cull_facing {
+    cull_vec3 normal;
+    double inverse; // of the length that it had
+    double slack;   // metres per metre of radius, see cull_plane_outward
+} cull_facing;
+
+static inline cull_facing cull_facing_of(const double normal[3])
+{
+    const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    const double inverse = 1 / length, x = normal[0] * inverse, y = normal[1] * inverse, z = normal[2] * inverse;
+    const cull_facing facing = {{(float)x, (float)y, (float)z}, inverse, CULL_GUARD_ROUNDING * (fabs(x) + fabs(y) + fabs(z))};
+    return facing;
+}
+
+static inline cull_plane cull_facing_at(const cull_facing *facing, double offset, double radius)
+{
+    const double slack = facing->slack * radius + CULL_GUARD_UNDERFLOW;
+    const double exact = offset * facing->inverse + slack, most = (double)FLT_MAX;
+    const double wanted = exact > most ? most : exact < -most ? -most : exact;
+    float up = (float)wanted;
+    if ((double)up < wanted) up = cull_float_above(up);
+    const cull_plane plane = {facing->normal, up};
+    return plane;
+}
+
 // normal . p + offset >= 0 rounded to float such that a plain float evaluation at p (|coordinates| <= radius), in any order
 // of the sums, fused or not, is >= 0 wherever the exact value is. normal need not be a unit vector.
 //
@@ -79,15 +118,8 @@ typedef struct cull_guard {
 // costs u S. Rounding the normal costs u S. Together 4 u S: at most 0.87 * 2^-21 * radius. The offset is rounded up.
 static inline cull_plane cull_plane_outward(const double normal[3], double offset, double radius)
 {
-    const double length = sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-    const double inverse = 1 / length, x = normal[0] * inverse, y = normal[1] * inverse, z = normal[2] * inverse;
-    const double slack = CULL_GUARD_ROUNDING * (fabs(x) + fabs(y) + fabs(z)) * radius + CULL_GUARD_UNDERFLOW;
-    const double exact = offset * inverse + slack, most = (double)FLT_MAX;
-    const double wanted = exact > most ? most : exact < -most ? -most : exact;
-    float up = (float)wanted;
-    if ((double)up < wanted) up = nextafterf(up, FLT_MAX);
-    const cull_plane plane = {{(float)x, (float)y, (float)z}, up};
-    return plane;
+    const cull_facing facing = cull_facing_of(normal);
+    return cull_facing_at(&facing, offset, radius);
 }
 
 // THE guard band. The plane normal . (p - eye) + distance >= 0, normal a unit vector, distance 0 (through the eye: the
@@ -96,17 +128,37 @@ static inline cull_plane cull_plane_outward(const double normal[3], double offse
 // A plane through the eye is a line on the picture; adding m * forward to its normal moves the line out by m tangents.
 // m holds the pixel part, and for boxes widened by g times their distance r, whose corners move by up to
 // sqrt(3) g r, sqrt(3) g times the reach: for a point q of the picture at depth 1, r <= reach, corners too.
-static inline cull_plane cull_guard_plane(const cull_guard *guard, const double normal[3], double distance)
+typedef struct cull_guarded { // what of the plane is the same in all zones of a view
+    cull_facing facing;
+    double out[3], ahead; // the normal, moved; the distance, widened
+} cull_guarded;
+
+// Of the guard: forward, pixel_tangent, reach.
+static inline cull_guarded cull_guard_direction(const cull_guard *guard, const double normal[3], double distance)
 {
-    const double *eye = guard->eye, *forward = guard->forward;
+    const double *forward = guard->forward;
     const double widening = 1.7320508075688772 * CULL_GUARD_DISTANCE * (1 + 1.0 / 262144) * guard->reach;
     const double along = normal[0] * forward[0] + normal[1] * forward[1] + normal[2] * forward[2];
     const double rest = 1 - along * along, across = sqrt(rest > 0 ? rest : 0); // tangents that the line moves at, per unit of normal
     const double moved = distance > 0 ? 0 : CULL_GUARD_PX * guard->pixel_tangent * across + widening;
-    double out[3];
-    for (int i = 0; i < 3; i++) out[i] = normal[i] + moved * forward[i];
-    const double offset = distance * (1 + widening) - (out[0] * eye[0] + out[1] * eye[1] + out[2] * eye[2]);
-    return cull_plane_outward(out, offset, guard->radius);
+    cull_guarded to;
+    for (int i = 0; i < 3; i++) to.out[i] = normal[i] + moved * forward[i];
+    to.facing = cull_facing_of(to.out);
+    to.ahead = distance * (1 + widening);
+    return to;
+}
+
+// The eye and radius of the zone.
+static inline cull_plane cull_guarded_at(const cull_guarded *g, const double eye[3], double radius)
+{
+    const double offset = g->ahead - (g->out[0] * eye[0] + g->out[1] * eye[1] + g->out[2] * eye[2]);
+    return cull_facing_at(&g->facing, offset, radius);
+}
+
+static inline cull_plane cull_guard_plane(const cull_guard *guard, const double normal[3], double distance)
+{
+    const cull_guarded g = cull_guard_direction(guard, normal, distance);
+    return cull_guarded_at(&g, guard->eye, guard->radius);
 }
 
 #endif

@@ -26,8 +26,11 @@ enum {
     KEY_IMAGES,
     KEY_LATENCY,
     KEY_JSON,
+    KEY_NO_MOVERS,
     KEY_PLUGIN
 };
+
+typedef enum movers_choice { MOVERS_DRAWN, MOVERS_AWAY } movers_choice;
 
 typedef struct arguments {
     const char *scene, *views, *images, *json;
@@ -38,6 +41,7 @@ typedef struct arguments {
     doors_choice doors;
     bench_truth truth;
     bench_ids ids;
+    movers_choice movers;
     app_plugin_files plugins;
 } arguments;
 
@@ -56,6 +60,7 @@ static const struct argp_option options[] = {
     {"no-truth", KEY_NO_TRUTH, NULL, 0, "time only: no pictures, no GL unless a culler tests", 0},
     {"ids", KEY_IDS, NULL, 0, "writing the id of every drawn item counts as culling", 0},
     {"doors", KEY_DOORS, "open|shut|scene", 0, "how doors stand (default open; scene: as its file says)", 0},
+    {"no-movers", KEY_NO_MOVERS, NULL, 0, "doors' leaves and all else that moves taken away: what stands still is not hidden by them", 0},
     {"images", KEY_IMAGES, "DIR", 0, "write a picture of each strategy, and of its worst view", 0},
     {"query-latency", KEY_LATENCY, "L", 0, "an answer is readable L steps later (default 0)", 0},
     {"json", KEY_JSON, "FILE|-", 0, "results in Google Benchmark's shape", 0},
@@ -84,6 +89,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     arguments *a = state->input;
     switch (key) {
     case KEY_VIEWS: a->views = text; break;
+    case KEY_NO_MOVERS: a->movers = MOVERS_AWAY; break;
     case KEY_CULLER: add_text(a->cullers, &a->culler_count, STRATEGIES_MOST, text, state); break;
     case KEY_ZONE: add_text(a->zones.texts, &a->zones.count, ZONE_OPTIONS_MOST, text, state); break;
     case KEY_PLUGIN: add_text(a->plugins.files, &a->plugins.count, APP_PLUGINS_MOST, text, state); break;
@@ -102,7 +108,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         break;
     case ARGP_KEY_END:
         if (!a->scene) argp_error(state, "SCENE is missing");
-        if (!a->views) argp_error(state, "--views is missing; name a .views file, auto:N, auto:walk:N or path:NAME");
+        if (!a->views) argp_error(state, "--views is missing; name a .views file, auto:N, auto:walk:N, auto:edges:N or path:NAME");
         if (a->swap && a->culler_count < 2) argp_error(state, "--swap needs two or more --culler to go through");
         if (a->swap && a->culler_count == STRATEGIES_MOST) argp_error(state, "too many of one option");
         break;
@@ -219,6 +225,7 @@ int command_bench(int argc, char **argv)
     result done = app_open(&a, &q.plugins);
     if (done == RESULT_OK) done = check_early(&a, &q);
     if (done == RESULT_OK) done = import_scene(q.scene, &import, a.memory, &a.report, &a.scene);
+    if (done == RESULT_OK && q.movers == MOVERS_AWAY) scene_movers_drop(a.scene);
     if (done == RESULT_OK) done = camera_path_load(q.views, a.scene, (double)q.size.width_px / q.size.height_px, a.memory, &a.report, &path);
     if (done == RESULT_OK) done = run_bench(&a, &q, &path, &failed);
     camera_path_free(&path, a.memory);

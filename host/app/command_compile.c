@@ -9,6 +9,7 @@
 #include "compile_arguments.h"
 #include "compile_dump.h"
 #include "compile_report.h"
+#include "plan_picture.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -145,6 +146,7 @@ static result stage_write(compilation *c)
     result done = RESULT_OK;
     if (c->asked->prt) done = editor_prt_write(c->input, c->zones, c->asked->prt, &c->memory, &c->report);
     if (done == RESULT_OK && c->asked->pts) done = editor_pts_write(c->zones, c->asked->pts, &c->memory, &c->report);
+    if (done == RESULT_OK && c->asked->plan) done = plan_picture_write(c->scene, c->asked->plan, &c->memory, &c->report);
     return done == RESULT_OK ? pcs_write(&q, c->asked->out, &c->memory, &c->report) : done;
 }
 

@@ -21,6 +21,7 @@ static const struct argp_option options[] = {
     {"grid", 'g', "G", 0, "grid steps a unit, a whole number (default 256)", 0},
     {"prt", 'r', "FILE", 0, "the portals too, as map editors read them", 0},
     {"pts", 't', "FILE", 0, "the leak's line too, as map editors read it; without a leak an old one is removed", 0},
+    {"plan", 'l', "FILE.png", 0, "a picture of the zones from above, portals as lines", 0},
     {"dump", 'd', "STAGE[=FILE]", 0,
      "what a stage made, as text: input, relations, csg, weld, merge, portals, zones, t_junctions or items (default to stdout); may be given again", 0},
     {"bake", 'b', "CHAIN", 0, "keep the indices that this chain builds in the file", 0},
@@ -70,6 +71,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     else if (key == 'o') a->out = text;
     else if (key == 'r') a->prt = text;
     else if (key == 't') a->pts = text;
+    else if (key == 'l') a->plan = text;
     else if (key == 'b') a->bake = text;
     else if (key == 'd') {
         compile_stage_names((compile_stage)STAGES_DUMPED, names);
@@ -109,15 +111,16 @@ static int is_same_file(const char *a, const char *b)
 
 result compile_arguments_check(const compile_arguments *a, report *r)
 {
-    const char *outputs[3 + STAGES_DUMPED] = {a->out, a->prt, a->pts};
-    memcpy(outputs + 3, a->dump_files, sizeof a->dump_files);
+    enum { NAMED = 4 };
+    const char *outputs[NAMED + STAGES_DUMPED] = {a->out, a->prt, a->pts, a->plan};
+    memcpy(outputs + NAMED, a->dump_files, sizeof a->dump_files);
     const char *dot = strrchr(a->out, '.');
     const int is_device = strncmp(a->out, "/dev/", 5) == 0;
     if (!is_device && (!dot || strcasecmp(dot, ".pcs") != 0))
         return report_error(r, a->out, 0, "a compiled scene is a .pcs file; end the name in .pcs");
     if (!*a->input) return report_error(r, NULL, 0, "an empty file name; name a .map or .json of brushes");
-    for (int i = 0; i < 3 + STAGES_DUMPED; ++i) {
-        if (!outputs[i] || (i >= 3 && !*outputs[i])) continue;
+    for (int i = 0; i < NAMED + STAGES_DUMPED; ++i) {
+        if (!outputs[i] || (i >= NAMED && !*outputs[i])) continue;
         const result can = file_can_write(outputs[i], r);
         if (can != RESULT_OK) return can;
         if (is_same_file(outputs[i], a->input)) return report_error(r, outputs[i], 0, "is the input itself; name another file to write");

@@ -6,7 +6,7 @@
 #include "../compile/stages.h"
 
 typedef struct compile_arguments {
-    const char *input, *out, *prt, *pts, *bake; // all but the first two may be NULL
+    const char *input, *out, *prt, *pts, *plan, *bake; // all but the first two may be NULL
     const char *dump_files[STAGES_DUMPED];      // by stage; NULL: no dump; "": to stdout
     input_options options;
     zone_options zones;

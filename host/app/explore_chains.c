@@ -3,6 +3,8 @@
 // Invariant: the layout holds a zone in the order of its chain, or e->failure is set and nothing is drawn any more.
 #include "explore.h"
 
+#include "../core/pieces.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -43,6 +45,17 @@ static result tell_slots(explore *e)
     return done;
 }
 
+static result tell_pieces(explore *e)
+{
+    const uint32_t zone_count = e->a->scene->zone_count;
+    const cull_pieces **pieces = memory_alloc(e->a->memory, zone_count, sizeof *pieces);
+    if (!pieces) return report_no_memory(&e->a->report, NULL);
+    for (uint32_t z = 0; z < zone_count; ++z) pieces[z] = chain_pieces(world_chain(e->w, z), &e->a->report);
+    const result done = render_layout_pieces(e->layout, pieces, &e->a->report);
+    memory_free(e->a->memory, pieces, zone_count, sizeof *pieces);
+    return done;
+}
+
 result explore_reserve(explore *e)
 {
     uint64_t tests = 0, most = TESTS_RESERVED_MOST;
@@ -51,7 +64,8 @@ result explore_reserve(explore *e)
         tests += wanted;
         most = wanted > most ? wanted : most;
     }
-    const result done = tell_slots(e);
+    result done = tell_slots(e);
+    if (done == RESULT_OK) done = tell_pieces(e);
     return done == RESULT_OK ? renderer_reserve(e->g, (uint32_t)(tests < most ? tests : most), &e->a->report) : done;
 }
 

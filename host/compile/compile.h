@@ -31,7 +31,8 @@ typedef enum brush_role {
 
 typedef struct compile_face {
     plane_ref plane;         // front: outside the brush
-    uint32_t material;       // in compile_input.materials; COMPILE_NOTHING: clip, skip, hint, trigger, origin: makes no polygon
+    uint32_t material;       // in compile_input.materials; COMPILE_NOTHING: clip, skip, hint, trigger, origin: makes no polygon; such a side
+                             // of a structure's brush has what most of its other, opaque ones have
     double texture[2][4];    // u, v = row . (x, y, z, 1), metres in scene axes
     uint32_t line;           // in the file, for messages
     uint32_t is_rounded;     // its points were not on the grid as written: the weld may lay its plane anew
@@ -148,10 +149,10 @@ typedef enum portal_choice { PORTALS_DOORS, PORTALS_NONE, PORTALS_AUTHORED, PORT
 typedef struct room_limits {
     double openness;  // rooms less open to each other than this stay apart; see rooms_merge.c
     uint32_t rooms;   // instead: no more than these; 0: openness decides
-    uint32_t portals; // no more than these between rooms, coplanar neighbours counted as one
+    uint32_t portals; // no more than these between rooms, as they stand in the scene: coplanar neighbours joined
 } room_limits;
 typedef struct zone_options { portal_choice portals; room_limits rooms; } zone_options; // rooms: of PORTALS_AUTO
-zone_options zone_options_of(portal_choice choice); // openness 0.5, 100 portals
+zone_options zone_options_of(portal_choice choice); // openness 1.1, 100 portals
 
 typedef struct compiled_portal {
     plane_ref plane;                     // front: zones[0]

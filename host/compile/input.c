@@ -122,6 +122,34 @@ static result take_planes(input_draft *d, const compile_face *faces, uint32_t co
     return RESULT_OK;
 }
 
+// What most faces of the brush show, of those that are opaque; of several the first by name, so that no order of the faces decides.
+static uint32_t usual_material(const input_draft *d, const compile_face *faces, uint32_t count)
+{
+    const compile_material *materials = d->materials.items;
+    uint32_t best = COMPILE_NOTHING, most = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        const uint32_t material = faces[i].material;
+        if (material == COMPILE_NOTHING || materials[material].flags & (MATERIAL_TRANSLUCENT | MATERIAL_CUT_OUT)) continue;
+        uint32_t uses = 0;
+        for (uint32_t k = 0; k < count; ++k) uses += faces[k].material == material;
+        if (uses < most || (uses == most && strcmp(materials[material].name, materials[best].name) >= 0)) continue;
+        best = material;
+        most = uses;
+    }
+    return best;
+}
+
+// A side without a material (skip ...) of structure bounds air like any other. Left out, one looks through it into the rock and on
+// into rooms that no zone's portals lead to.
+static void close_holes(const input_draft *d, compile_face *faces, uint32_t count)
+{
+    uint32_t holes = 0;
+    for (uint32_t i = 0; i < count; ++i) holes += faces[i].material == COMPILE_NOTHING;
+    const uint32_t usual = holes ? usual_material(d, faces, count) : COMPILE_NOTHING;
+    for (uint32_t i = 0; i < count && holes; ++i)
+        if (faces[i].material == COMPILE_NOTHING) faces[i].material = usual;
+}
+
 static result add_cut_brush(input_draft *d, const compile_brush *brush, const compile_face *faces, const uint32_t *kept)
 {
     compile_brush made = *brush;
@@ -134,6 +162,7 @@ static result add_cut_brush(input_draft *d, const compile_brush *brush, const co
     if (shape_close_pairs(&d->shape, d->in->planes, d->weld) && !buffer_append(&d->close, &number, 1)) return report_no_memory(d->report, d->path);
     const shape_face *from = d->shape.faces.items;
     for (uint32_t i = 0; i < made.face_count; ++i) to[i] = faces[kept[from[i].face]];
+    if (made.role == BRUSH_STRUCTURE) close_holes(d, to, made.face_count);
     return RESULT_OK;
 }
 

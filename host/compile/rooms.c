@@ -169,7 +169,7 @@ result rooms_portals(const compile_input *in, const zone_trace *t, const room_li
     if (r == RESULT_OK) {
         const cell_input from = {in->planes, b.walls.items, b.edges.items, (uint32_t)b.walls.count, (uint32_t)b.edges.count};
         r = cell_set_make(&from, memory, &b.cells);
-        if (r == RESULT_OK) r = rooms_merge(&b.cells, limits, memory, &b.rooms);
+        if (r == RESULT_OK) r = rooms_merge(&b.cells, in->planes, limits, memory, &b.rooms);
         if (r == RESULT_OK) r = pieces_add(&b);
         room_map_free(&b.rooms, memory);
         cell_set_free(&b.cells);

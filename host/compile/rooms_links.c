@@ -74,31 +74,41 @@ static int plane_add(link_set *s, room_link *l, uint32_t plane)
 
 // ---- Links ----
 
-result links_open(link_set *s, uint32_t room_count, const allocator *memory)
+result links_open(link_set *s, uint32_t room_count, uint32_t face_count, const allocator *memory)
 {
-    *s = (link_set){.memory = memory, .links = buffer_make(memory, sizeof(room_link)), .planes = buffer_make(memory, sizeof(uint32_t)), .room_count = room_count};
+    *s = (link_set){.memory = memory, .links = buffer_make(memory, sizeof(room_link)), .planes = buffer_make(memory, sizeof(uint32_t)), .room_count = room_count, .face_count = face_count};
     s->of_room = memory_alloc(memory, room_count, sizeof *s->of_room);
-    if (!s->of_room) return RESULT_NO_MEMORY;
-    for (uint32_t i = 0; i < room_count; ++i) s->of_room[i] = buffer_make(memory, sizeof(uint32_t));
-    return RESULT_OK;
+    s->next_face = memory_alloc(memory, face_count, sizeof *s->next_face);
+    for (uint32_t i = 0; i < room_count && s->of_room; ++i) s->of_room[i] = buffer_make(memory, sizeof(uint32_t));
+    return s->of_room && s->next_face ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
 void links_close(link_set *s)
 {
     for (uint32_t i = 0; i < s->room_count && s->of_room; ++i) buffer_free(&s->of_room[i]);
     memory_free(s->memory, s->of_room, s->room_count, sizeof *s->of_room);
+    memory_free(s->memory, s->next_face, s->face_count, sizeof *s->next_face);
     memory_free(s->memory, s->slots, s->slot_count, sizeof *s->slots);
     buffer_free(&s->links);
     buffer_free(&s->planes);
 }
 
-result links_add(link_set *s, const uint32_t rooms[2], uint32_t plane, const link_face *face)
+// Chains two lists of faces: those of the second behind those of the first.
+static void faces_chain(link_set *s, room_link *to, uint32_t first, uint32_t last)
+{
+    if (to->first_face == LINK_NO_FACE) to->first_face = first;
+    else s->next_face[to->last_face] = first;
+    to->last_face = last;
+    to->portals = LINK_UNKNOWN;
+}
+
+result links_add(link_set *s, const uint32_t rooms[2], const link_face *face)
 {
     if (slots_grow(s) != RESULT_OK) return RESULT_NO_MEMORY;
     uint32_t *slot = slot_find(s, rooms[0], rooms[1]);
     if (*slot == 0) {
         const uint32_t link = link_count(s);
-        const room_link made = {.rooms = {rooms[0], rooms[1]}, .first_plane = (uint32_t)s->planes.count};
+        const room_link made = {.rooms = {rooms[0], rooms[1]}, .first_plane = (uint32_t)s->planes.count, .first_face = LINK_NO_FACE};
         if (!buffer_append(&s->links, &made, 1) || !buffer_append(&s->of_room[rooms[0]], &link, 1) || !buffer_append(&s->of_room[rooms[1]], &link, 1))
             return RESULT_NO_MEMORY;
         *slot = link + 1;
@@ -107,7 +117,9 @@ result links_add(link_set *s, const uint32_t rooms[2], uint32_t plane, const lin
     room_link *l = link_at(s, *slot - 1);
     l->area += face->area;
     for (int k = 0; k < 3; ++k) l->moment[k] += face->area * face->middle[k];
-    return plane_add(s, l, plane) ? RESULT_OK : RESULT_NO_MEMORY;
+    s->next_face[face->face] = LINK_NO_FACE;
+    faces_chain(s, l, face->face, face->face);
+    return plane_add(s, l, face->plane) ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
 static void list_drop(buffer *list, uint32_t link)
@@ -138,6 +150,7 @@ static result link_fold(link_set *s, uint32_t link, uint32_t into)
     const room_link from = *link_at(s, link);
     room_link *to = link_at(s, into);
     to->area += from.area;
+    faces_chain(s, to, from.first_face, from.last_face);
     for (int k = 0; k < 3; ++k) to->moment[k] += from.moment[k];
     for (uint32_t i = 0; i < from.plane_count; ++i) {
         const uint32_t plane = ((uint32_t *)s->planes.items)[from.first_plane + i];

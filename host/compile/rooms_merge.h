@@ -12,7 +12,7 @@ typedef struct room_map {
 } room_map;
 
 // To be freed also after a failure, with the same memory.
-result rooms_merge(const cell_set *cells, const room_limits *limits, const allocator *memory, room_map *out);
+result rooms_merge(const cell_set *cells, const plane_table *planes, const room_limits *limits, const allocator *memory, room_map *out);
 void room_map_free(room_map *m, const allocator *memory);
 
 #endif

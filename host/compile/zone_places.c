@@ -22,14 +22,22 @@ void zone_place_point(const compile_input *in, const compile_entity *e, int32_t 
     for (int k = 0; k < 3; ++k) out[k] = on_grid(e->origin[k] * in->steps_per_metre);
 }
 
-typedef struct place_votes { uint32_t regions[6], votes[6], count; } place_votes;
+enum { TOUCHED_MOST = 32 }; // regions that meet in a point; more are not asked
+typedef struct place_votes { uint32_t regions[TOUCHED_MOST], votes[TOUCHED_MOST], count; } place_votes;
 
-static void vote(place_votes *v, uint32_t region)
+static uint32_t *vote_of(place_votes *v, uint32_t region)
 {
     uint32_t i = 0;
     while (i < v->count && v->regions[i] != region) ++i;
+    if (i == TOUCHED_MOST) return NULL;
     if (i == v->count) v->regions[v->count] = region, v->votes[v->count++] = 0;
-    v->votes[i]++;
+    return &v->votes[i];
+}
+
+static void vote(place_votes *v, uint32_t region)
+{
+    uint32_t *votes = vote_of(v, region);
+    if (votes) ++*votes;
 }
 
 // A region's size, for ties.
@@ -64,8 +72,34 @@ static uint32_t elected(const zone_trace *t, const place_votes *v)
     return best;
 }
 
-// One on a floor, in a wall's face or a portal's is where most ways off it lead, then in the larger region: the same
-// however the map is turned. Off a wall never into the void: that would be a leak that isn't there.
+static int touches(const zone_trace *t, uint32_t polygon, const int32_t point[3])
+{
+    const surface_polygon *p = surface_polygon_at(&t->s, polygon);
+    const surface_corner *c = surface_corners(&t->s, p);
+    if (p->kind == SURFACE_LIQUID) return 0;
+    for (int k = 0; k < 3; ++k)
+        if (point[k] < p->min[k] - 1 || point[k] > p->max[k] + 1) return 0;
+    if (plane_table_side_of_point(t->s.planes, point, p->plane) != 0) return 0;
+    for (uint32_t i = 0; i < p->count; ++i)
+        if (plane_table_side_of_point(t->s.planes, point, c[i].edge) > 0) return 0;
+    return 1;
+}
+
+// The air in front of polygons that the point lies on, and behind portals: one voice each, for what they are, not how many.
+static void find_touched(const zone_trace *t, const int32_t point[3], place_votes *v)
+{
+    for (uint32_t i = 0; i < surface_polygon_count(&t->s); ++i) {
+        if (!touches(t, i, point)) continue;
+        const uint32_t sides = surface_is_two_sided(surface_polygon_at(&t->s, i)->kind) ? 2 : 1;
+        for (uint32_t side = 0; side < sides; ++side) {
+            const uint32_t region = zone_trace_region(t, 2 * i + side);
+            if (region != REGION_VOID && region != REGION_SOLID) (void)vote_of(v, region);
+        }
+    }
+}
+
+// One on a floor, in a wall's face or a portal's is in the largest region that it touches: the same however the map is turned.
+// One in a wall is where most ways off it lead. Off a wall never into the void: that would be a leak that isn't there.
 static result place(const compile_input *in, zone_trace *t, const compile_entity *e, uint32_t *region)
 {
     static const int32_t ways[][3] = {{0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {0, -1, 0}};
@@ -75,7 +109,9 @@ static result place(const compile_input *in, zone_trace *t, const compile_entity
     zone_place_point(in, e, point);
     result r = region_of_point(&t->regions, &t->rays, point, region);
     if (r != RESULT_OK || *region != REGION_SOLID) return r;
-    for (size_t i = 0; i < sizeof(ways) / sizeof(ways[0]) && r == RESULT_OK; ++i) {
+    find_touched(t, point, &votes);
+    const int is_touching = votes.count > 0;
+    for (size_t i = 0; i < sizeof(ways) / sizeof(ways[0]) && r == RESULT_OK && !is_touching; ++i) {
         int32_t by[3];
         uint32_t found;
         for (int k = 0; k < 3; ++k) by[k] = on_grid(point[k] + ways[i][k] * nudge);

@@ -306,7 +306,7 @@ result compile_zones_with(const compile_input *in, compile_mesh *mesh, const zon
 
 zone_options zone_options_of(portal_choice choice)
 {
-    return (zone_options){choice, {.openness = 0.5, .portals = 100}};
+    return (zone_options){choice, {.openness = 1.1, .portals = 100}};
 }
 
 result compile_zones(const compile_input *in, compile_mesh *mesh, portal_choice choice, report *r, const allocator *memory, compiled_zones **out)

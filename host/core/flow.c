@@ -34,6 +34,16 @@ static void gate_make(flow *f, uint32_t portal)
     f->most_bend = larger(f->most_bend, g->bend);
 }
 
+static void exit_make(flow *f, uint32_t place)
+{
+    const uint32_t way = f->scene->zone_portals[place];
+    const scene_portal *p = &f->scene->portals[way / 2];
+    flow_exit *e = &f->exits[place];
+    *e = (flow_exit){.bend = f->gates[way / 2].bend, .way = way, .target = p->zones[1 - way % 2]};
+    memcpy(e->at, f->scene->portal_points[p->first_point], sizeof e->at);
+    for (int k = 0; k < 3; k++) e->normal[k] = way % 2 == 0 ? p->plane[k] : -p->plane[k];
+}
+
 // Planes that this box lies inside of are left out of the zone's volumes: it holds the items, and where movers may come
 // the zone's hulls, without hulls everything.
 static cull_box box_with_movers(const scene *s, const zone_data *z)
@@ -58,6 +68,7 @@ static void places_make(flow *f, const zone_data *zones)
         memcpy(f->places[z].origin, f->scene->zones[z].origin, sizeof f->places[z].origin);
     }
     for (uint32_t p = 0; p < f->scene->portal_count; p++) gate_make(f, p);
+    for (uint32_t i = 0; i < 2 * f->scene->portal_count; i++) exit_make(f, i);
     zone_seams_find(f->scene, f->seams);
     f->first_stray = f->scene->zone_count;
     for (uint32_t z = f->scene->zone_count; z-- > 0;)
@@ -86,6 +97,7 @@ static result arrays_open(flow *f)
     f->places = arena_push(a, zones, sizeof *f->places);
     f->seams = arena_push(a, zones, sizeof *f->seams);
     f->gates = arena_push(a, portals, sizeof *f->gates);
+    f->exits = arena_push(a, 2 * portals, sizeof *f->exits);
     f->nodes = arena_push(a, nodes, sizeof *f->nodes);
     f->planes = arena_push(a, f->plane_capacity, sizeof *f->planes);
     f->records = arena_push(a, f->plane_capacity, sizeof *f->records);
@@ -100,7 +112,7 @@ static result arrays_open(flow *f)
     f->starts = arena_push(a, zones, sizeof *f->starts);
     f->volumes = arena_push(a, nodes, sizeof *f->volumes);
     f->by_zone = arena_push(a, nodes, sizeof *f->by_zone);
-    const int has_all = f->places && f->seams && f->gates && f->nodes && f->planes && f->records && f->states && f->queue && f->queue_places && f->ways &&
+    const int has_all = f->places && f->seams && f->gates && f->exits && f->nodes && f->planes && f->records && f->states && f->queue && f->queue_places && f->ways &&
                         f->polygon[0] && f->polygon[1] && f->order[0] && f->order[1] && f->found && f->sorted && f->starts && f->volumes &&
                         f->by_zone;
     if (!has_all) return RESULT_NO_MEMORY;
@@ -109,7 +121,8 @@ static result arrays_open(flow *f)
     memset(f->ways, 0, 2 * portals);
     memset(f->queue_places, 0, nodes * sizeof *f->queue_places);
     f->lent = list_open(f->memory, CULL_MAX_PLANES, sizeof(cull_plane));
-    return f->lent.items ? RESULT_OK : RESULT_NO_MEMORY;
+    f->seen = list_open(f->memory, CULL_MAX_PLANES, sizeof(cull_plane));
+    return f->lent.items && f->seen.items ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
 result flow_open(const flow_open_request *q, const allocator *memory, flow **out)
@@ -139,6 +152,7 @@ void flow_close(flow *f)
     if (!f) return;
     flow_ports_close(f);
     list_close(&f->lent, f->memory);
+    list_close(&f->seen, f->memory);
     arena_free(&f->blocks);
     memory_free(f->memory, f, 1, sizeof *f);
 }
@@ -177,39 +191,12 @@ void flow_root_add(flow *f, const flow_arrival *a)
     n->plane_count = volume.plane_count;
     for (uint32_t i = 0; i < volume.plane_count; i++) {
         n->planes[i] = volume.planes[i];
-        if (f->scene->portal_count > 0) n->records[i] = flow_record_of(f, volume.planes[i], a->zone);
+        n->records[i] = (flow_record){volume.planes[i], FLOW_ROOT_RECORD + volume.sides[i]};
     }
     flow_queue(f, n);
 }
 
 // ---- A run ----
-
-static void side_make(flow *f, const double axis[3], double sign, double tangent)
-{
-    double *normal = f->side_normals[f->side_count];
-    const double inverse = 1 / sqrt(1 + tangent * tangent);
-    for (int i = 0; i < 3; i++) normal[i] = (sign * axis[i] + tangent * -f->base.back[i]) * inverse;
-    f->side_distances[f->side_count++] = 0;
-}
-
-// The sides of the picture as view_volume_in_zone makes them, known again by the bits of their normals, which are the
-// same in every zone.
-static void sides_make(flow *f)
-{
-    const view_base *b = &f->base;
-    for (int sign = -1; sign <= 1; sign += 2) {
-        side_make(f, b->right, sign, b->wide);
-        side_make(f, b->up, sign, b->tall);
-    }
-    if (isfinite(b->camera->far_m)) {
-        memcpy(f->side_normals[f->side_count], b->back, sizeof b->back);
-        f->side_distances[f->side_count++] = b->camera->far_m;
-    }
-    for (uint32_t i = 0; i < f->side_count; i++) {
-        const cull_guard guard = flow_guard(f, 0);
-        f->side_floats[i] = cull_guard_plane(&guard, f->side_normals[i], f->side_distances[i]).normal;
-    }
-}
 
 static void run_begin(flow *f, const flow_request *q)
 {
@@ -226,8 +213,6 @@ static void run_begin(flow *f, const flow_request *q)
     // As cull_guard_plane moves a line of the picture: pixels, and the boxes' widening at the picture's corner.
     f->widening = 1.7320508075688772 * CULL_GUARD_DISTANCE * (1 + 1.0 / 262144) * f->base.reach;
     f->guard_tangent = CULL_GUARD_PX * f->base.pixel_tangent + f->widening * f->base.reach;
-    f->side_count = 0;
-    if (f->scene->portal_count > 0) sides_make(f); // without portals nobody asks
 }
 
 static double place_distance(const view_place *p, const double eye[3])
@@ -246,7 +231,7 @@ static double place_distance(const view_place *p, const double eye[3])
 static int is_start(const flow *f, uint32_t zone, double beyond_m)
 {
     const double near_m = beyond_m + (double)f->places[zone].radius / 65536 + f->seams[zone].out;
-    return zone_height(f->scene, zone, f->base.camera->eye) <= near_m;
+    return graph_zone_reaches(f->graph, zone, f->base.camera->eye, near_m);
 }
 
 static void start(flow *f)
@@ -255,11 +240,11 @@ static void start(flow *f)
     const double *eye = f->base.camera->eye;
     const uint32_t count = graph_zones_at(f->graph, eye, f->corner_m + f->most_start_m, f->starts, s->zone_count);
     // A zone that only the near plane reaches into does not hold the eye, and says nothing of what stands between the zones.
-    uint32_t holds = 0;
-    for (uint32_t i = 0; i < count && !holds; i++) holds = (uint32_t)is_start(f, f->starts[i], 0);
-    for (uint32_t i = 0; i < count && holds; i++)
-        if (is_start(f, f->starts[i], f->corner_m)) flow_root_add(f, &(flow_arrival){f->starts[i], SCENE_NONE, SCENE_NONE, 0});
-    if (holds) return;
+    uint32_t holder = 0; // the first
+    while (holder < count && !is_start(f, f->starts[holder], 0)) holder++;
+    for (uint32_t i = 0; i < count && holder < count; i++)
+        if (i == holder || is_start(f, f->starts[i], f->corner_m)) flow_root_add(f, &(flow_arrival){f->starts[i], SCENE_NONE, SCENE_NONE, 0});
+    if (holder < count) return;
     f->result.is_everything = 1;
     for (uint32_t z = 0; z < s->zone_count; z++)
         if (!(s->zones[z].flags & ZONE_STRAY))

@@ -14,12 +14,20 @@ enum {
     FLOW_CROSSINGS = 4096,   // volumes of a view that are not its whole frustum, before all that come merge
 };
 
+typedef struct flow_sight {
+    const cull_view *view;
+    const cull_volume *in;
+    uint32_t zone, portal, part; // portal: in the order of the zone's cull_zone.portals
+} flow_sight;
 // Who narrows volumes. NULL cross, or a zone without crosser (it answers CULL_CROSS_SAME): the flood.
 typedef struct flow_crosser {
     void *user;
     // portal: in the order of the zone's cull_zone.portals. As cull_plugin.cross.
     cull_crossing (*cross)(void *user, uint32_t zone, const cull_view *view, const cull_volume *in, uint32_t portal, cull_plane *planes,
                            uint32_t *plane_count);
+    // As cull_sight.part, before cross is asked about each part; one part too many is asked for, which has to be NONE. NULL, or SAME of
+    // part 0: all goes to the portal.
+    cull_crossing (*sight)(void *user, const flow_sight *q, cull_plane *planes, uint32_t *plane_count);
 } flow_crosser;
 
 typedef struct flow_request {

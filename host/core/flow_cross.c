@@ -97,8 +97,10 @@ static int is_on_path(const flow *f, const flow_node *n, uint32_t portal)
 
 int flow_touches(const flow *f, const flow_node *n, uint32_t way)
 {
+    cull_cut cuts[CULL_MAX_PLANES];
     if (is_near(f, n->zone, way, flow_eye_height(f, way))) return 1;
-    const flow_polygon p = flow_clip(f, way / 2, n);
+    flow_cuts_make(f, n, cuts);
+    const flow_polygon p = flow_clip(f, way / 2, cuts, n->plane_count);
     return p.count > 0 && !is_before_entry(f, n, &p);
 }
 
@@ -137,10 +139,8 @@ static void same_add(flow *f, const crossing *c)
     flow_node *n = node_new(f, c, from->plane_count);
     n->source = from->source;
     n->rectangle = from->rectangle;
-    for (uint32_t i = 0; i < from->plane_count; i++) {
-        n->records[i] = from->records[i];
-        n->planes[i] = flow_plane_in(f, &n->records[i], c->target);
-    }
+    for (uint32_t i = 0; i < from->plane_count; i++) n->records[i] = from->records[i];
+    flow_planes_in(f, c->target, n->records, from->plane_count, n->planes);
     flow_queue(f, n);
 }
 
@@ -192,10 +192,8 @@ static void narrow_add(flow *f, const crossing *c, const cull_plane *planes, uin
     if (flow_eye_height(f, c->way) > flow_near_m(f, c->from->zone, c->way / 2)) n->flags |= NODE_CLIPPED;
     n->source = f->source_count++;
     n->rectangle = rectangle;
-    for (uint32_t i = 0; i < count; i++) {
-        n->records[i] = records[i];
-        n->planes[i] = flow_plane_in(f, &records[i], c->target);
-    }
+    for (uint32_t i = 0; i < count; i++) n->records[i] = records[i];
+    flow_planes_in(f, c->target, records, count, n->planes);
     flow_queue(f, n);
 }
 
@@ -211,6 +209,72 @@ static int is_sound(const cull_plane *planes, uint32_t count)
     return 1;
 }
 
+// What the crosser makes of one volume at the portal. NONE: nothing of it gets through.
+static cull_crossing take_volume(flow *f, const crossing *c, const cull_volume *in, const cull_view *view)
+{
+    cull_plane *planes = f->lent.items;
+    uint32_t count = 0;
+    const flow_crosser *crosser = &c->request->crosser;
+    if (flow_must_merge(f, &f->states[c->target], 0)) { // no need to ask
+        const flow_rectangle r = flow_rectangle_of(f, &c->polygon);
+        flow_merge_add(f, c->target, &r, c->key);
+        return CULL_CROSS_NARROW;
+    }
+    const cull_crossing answer = crosser->cross(crosser->user, c->from->zone, view, in, c->local, planes, &count);
+    if (answer == CULL_CROSS_NONE) return CULL_CROSS_NONE;
+    if (answer == CULL_CROSS_NARROW && is_sound(planes, count)) {
+        narrow_add(f, c, planes, count);
+        return CULL_CROSS_NARROW;
+    }
+    f->result.limits_hit += answer != CULL_CROSS_SAME;
+    same_add(f, c);
+    return CULL_CROSS_SAME;
+}
+
+// NARROW: *out is the part. SAME: all of `in`, and no part after it. One part too many is asked for: it has to be NONE.
+static cull_crossing part_ask(flow *f, const flow_crosser *crosser, const flow_sight *q, cull_volume *out)
+{
+    uint32_t count = 0;
+    *out = *q->in;
+    if (!crosser->sight) return CULL_CROSS_SAME;
+    const cull_crossing seen = crosser->sight(crosser->user, q, f->seen.items, &count);
+    if (seen == CULL_CROSS_NONE || seen == CULL_CROSS_SAME) return seen;
+    if (seen != CULL_CROSS_NARROW || q->part == CULL_MAX_PARTS || !is_sound(f->seen.items, count)) {
+        f->result.limits_hit++;
+        return CULL_CROSS_SAME;
+    }
+    *out = (cull_volume){f->seen.items, count, 0};
+    return CULL_CROSS_NARROW;
+}
+
+// What the part leaves of the portal. 0: no line gets through it.
+static int part_clip(const flow *f, const cull_volume *part, crossing *c)
+{
+    cull_cut cuts[CULL_MAX_PLANES];
+    for (uint32_t i = 0; i < part->plane_count; i++) cuts[i] = flow_cut_at_eye(f, part->planes[i], c->from->zone);
+    c->polygon = flow_clip(f, c->way / 2, cuts, part->plane_count);
+    return c->polygon.count > 0 && !is_before_entry(f, c->from, &c->polygon);
+}
+
+// Part by part of what gets to the portal, where the zone can tell; SAME of one part is all there is.
+static void take_parts(flow *f, const crossing *whole, uint8_t before)
+{
+    const cull_volume in = {whole->from->planes, whole->from->plane_count, 0};
+    flow_sight q = {&f->found[f->states[whole->from->zone].found].view, &in, whole->from->zone, whole->local, 0};
+    int any = 0;
+    for (; !(whole->from->flags & NODE_DEAD); q.part++) {
+        cull_volume through;
+        crossing c = *whole;
+        const cull_crossing seen = part_ask(f, &whole->request->crosser, &q, &through);
+        if (seen == CULL_CROSS_NONE) break;
+        const int is_all = q.part == 0 && seen == CULL_CROSS_SAME; // clipped already
+        const cull_crossing answer = is_all || part_clip(f, &through, &c) ? take_volume(f, &c, &through, q.view) : CULL_CROSS_NONE;
+        any |= answer != CULL_CROSS_NONE;
+        if (seen == CULL_CROSS_SAME || answer == CULL_CROSS_SAME) break;
+    }
+    if (!any) f->ways[whole->way] = before ? before : WAY_REFUSED;
+}
+
 static void take(flow *f, const crossing *c)
 {
     flow_state *s = &f->states[c->target];
@@ -221,7 +285,7 @@ static void take(flow *f, const crossing *c)
         flow_nearer(f, root_node(f, c->target), c->key);
         return;
     }
-    if (!c->is_near && flow_must_merge(f, s, 0)) { // no need to ask
+    if (!c->is_near && !c->request->crosser.cross && flow_must_merge(f, s, 0)) {
         const flow_rectangle r = flow_rectangle_of(f, &c->polygon);
         flow_merge_add(f, c->target, &r, c->key);
         return;
@@ -230,52 +294,52 @@ static void take(flow *f, const crossing *c)
         same_add(f, c);
         return;
     }
-    cull_plane *planes = f->lent.items;
-    uint32_t count = 0;
-    const flow_crosser *crosser = &c->request->crosser;
-    const cull_volume in = {c->from->planes, c->from->plane_count, 0};
-    const cull_view *view = &f->found[f->states[c->from->zone].found].view;
-    const cull_crossing answer = crosser->cross(crosser->user, c->from->zone, view, &in, c->local, planes, &count);
-    if (answer == CULL_CROSS_NONE) {
-        f->ways[c->way] = before ? before : WAY_REFUSED;
-    } else if (answer == CULL_CROSS_NARROW && is_sound(planes, count)) {
-        narrow_add(f, c, planes, count);
-    } else {
-        f->result.limits_hit += answer != CULL_CROSS_SAME;
-        same_add(f, c);
-    }
+    take_parts(f, c, before);
 }
 
-static void portal_try(flow *f, crossing *c)
+// How far the zone behind is this way: farther than the zone that is left, at least.
+static double key_of(const flow *f, const crossing *c)
+{
+    const double along = gate_distance(&f->gates[c->way / 2], f->base.camera->eye);
+    return along > c->from->key ? along : c->from->key;
+}
+
+// height: of the eye above the portal's plane, in the zone that is left.
+static void portal_try(flow *f, crossing *c, double height, flow_port_walk *walk)
 {
     const flow_node *from = c->from;
-    const uint32_t portal = c->way / 2;
-    if (!c->request->open[portal]) return;
-    const double height = flow_eye_height(f, c->way);
-    if (height < -flow_near_m(f, from->zone, portal)) return; // the eye is behind it
-    const double along = gate_distance(&f->gates[portal], f->base.camera->eye);
-    c->key = along > from->key ? along : from->key;
     const flow_state *s = &f->states[c->target];
-    if (s->flags & STATE_ROOT && s->key <= c->key) return; // it has all, and is no farther
-    if (is_on_path(f, from, portal)) return;
+    if (s->flags & STATE_ROOT && s->key <= key_of(f, c)) return; // it has all, and is no farther
+    if (is_on_path(f, from, c->way / 2)) return;
     f->result.crossings++;
     c->is_near = is_near(f, from->zone, c->way, height);
     if (!c->is_near) {
-        c->polygon = flow_clip(f, portal, from);
+        c->polygon = flow_clip(f, c->way / 2, flow_ports_cuts(walk), from->plane_count);
         if (c->polygon.count == 0 || is_before_entry(f, from, &c->polygon)) return;
     }
+    c->key = key_of(f, c);
     take(f, c);
+}
+
+// As flow_eye_height.
+static double exit_height(const flow *f, const flow_exit *e)
+{
+    const double *eye = f->base.camera->eye;
+    return (e->normal[0] * (eye[0] - e->at[0]) + e->normal[1] * (eye[1] - e->at[1])) + e->normal[2] * (eye[2] - e->at[2]);
 }
 
 void flow_leave(flow *f, const flow_request *q, flow_node *n)
 {
-    const scene_zone *z = &f->scene->zones[n->zone];
+    const flow_exit *exits = &f->exits[f->scene->zones[n->zone].first_portal];
+    const double near_m = f->corner_m + (double)f->places[n->zone].radius / 65536; // as flow_near_m
     flow_port_walk walk;
     uint32_t i;
     flow_ports_start(f, n, &walk);
     while (!(n->flags & NODE_DEAD) && flow_ports_next(&walk, &i)) {
-        const uint32_t way = f->scene->zone_portals[z->first_portal + i];
-        crossing c = {.request = q, .from = n, .way = way, .local = i, .target = f->scene->portals[way / 2].zones[1 - way % 2]};
-        portal_try(f, &c);
+        const flow_exit *e = &exits[i];
+        const double height = exit_height(f, e);
+        if (height < -(near_m + e->bend) || !q->open[e->way / 2]) continue; // the eye is behind it, or it is shut
+        crossing c = {.request = q, .from = n, .way = e->way, .local = i, .target = e->target};
+        portal_try(f, &c, height, &walk);
     }
 }

@@ -14,7 +14,7 @@
 #include <portcullis/plane.h>
 
 enum {
-    FLOW_ROOT_SIDES = 5,              // four sides of the picture and the far plane
+    FLOW_ROOT_SIDES = VIEW_SIDES_MOST,
     FLOW_PLANES_PER_CROSSING = 12,    // room kept on the average; a volume may have CULL_MAX_PLANES
     FLOW_GROWTHS = 2,                 // of a merged rectangle, before it becomes the whole picture
     FLOW_RECTANGLE_STEPS = 4,         // of a merged rectangle, between the picture's middle and its side
@@ -63,6 +63,13 @@ typedef struct flow_gate { // of a portal
     double bend;            // metres that its points lie off its plane
 } flow_gate;
 
+// A portal as the zone that is left has it, in the order of scene.zone_portals: most are passed over by this alone.
+typedef struct flow_exit {
+    double normal[3], at[3]; // into the zone; a point of the portal
+    double bend;             // as of the gate
+    uint32_t way, target;
+} flow_exit;
+
 enum { WAY_CROSSED = 1, WAY_REFUSED = 2 }; // refused: the crosser saw nothing behind it
 
 typedef struct flow_polygon { // relative to the eye, world axes
@@ -80,11 +87,13 @@ struct flow {
     view_place *places;   // by zone
     zone_seam *seams;     // by zone
     flow_gate *gates;     // by portal
+    flow_exit *exits;     // 2 a portal, zone by zone
     box_tree *trees;      // of zones with many portals, over their portals' boxes, relative to nothing: world
     uint32_t *tree_of;    // by zone: in trees, or SCENE_NONE
     uint32_t tree_count;
     double most_bend;     // metres, of all portals
     list lent;            // CULL_MAX_PLANES for a crosser to write
+    list seen;            // and for a sight
     double most_start_m; // of all zones: metres beyond the near plane's corner at which the eye is still taken as in it
     uint32_t first_stray; // the least zone that is one; zone_count: none
     uint32_t node_capacity, pool_capacity, plane_capacity, polygon_capacity;
@@ -92,9 +101,6 @@ struct flow {
     // Of the run.
     camera camera;
     view_base base;
-    double side_normals[FLOW_ROOT_SIDES][3], side_distances[FLOW_ROOT_SIDES];
-    cull_vec3 side_floats[FLOW_ROOT_SIDES]; // as every zone's float plane has them
-    uint32_t side_count;
     double corner_m, widening, guard_tangent; // near plane's corner; of cull_guard_plane; tangents a line of the picture moves by at most
     flow_node *nodes; // by zone: whole frustum; by zone: merged rectangle; then the pool
     uint32_t pool_count, plane_count, source_count;
@@ -137,12 +143,14 @@ typedef struct flow_port_walk {
     const flow *f;
     const flow_node *from;
     const box_tree *tree;
-    cull_cut cuts[CULL_MAX_PLANES]; // the node's planes for points relative to the eye
+    cull_cut cuts[CULL_MAX_PLANES]; // by flow_cuts_make, once somebody asks
+    int has_cuts;
     uint32_t stack[40], depth, at, end;
 } flow_port_walk;
 // The zone's portals that a volume may get through, by place in the zone's list; of few portals all of them.
 void flow_ports_start(const flow *f, const flow_node *from, flow_port_walk *out);
 int flow_ports_next(flow_port_walk *w, uint32_t *out);
+const cull_cut *flow_ports_cuts(flow_port_walk *w); // of `from`
 
 // ---- flow.c ----
 flow_state *flow_reach(flow *f, uint32_t zone, double key); // the view in it, when it is new
@@ -160,9 +168,10 @@ int flow_touches(const flow *f, const flow_node *n, uint32_t way); // of the pol
 // ---- flow_volume.c ----
 cull_guard flow_guard(const flow *f, uint32_t zone);
 flow_record flow_record_of(const flow *f, cull_plane plane, uint32_t zone);
-cull_plane flow_plane_in(const flow *f, const flow_record *r, uint32_t zone);
+void flow_planes_in(const flow *f, uint32_t zone, const flow_record *records, uint32_t count, cull_plane *out); // as the zone has them
 cull_cut flow_cut_at_eye(const flow *f, cull_plane plane, uint32_t zone); // the plane for points relative to the eye
-flow_polygon flow_clip(const flow *f, uint32_t portal, const flow_node *n);
+void flow_cuts_make(const flow *f, const flow_node *n, cull_cut cuts[CULL_MAX_PLANES]); // the node's planes for points relative to the eye
+flow_polygon flow_clip(const flow *f, uint32_t portal, const cull_cut *cuts, uint32_t cut_count);
 flow_rectangle flow_rectangle_of(const flow *f, const flow_polygon *p);
 // All that is seen of the zone through the polygon, in a volume of those planes, is in the other volume too.
 typedef struct flow_candidate { const flow_record *records; const flow_polygon *polygon; uint32_t plane_count, way; } flow_candidate;

@@ -50,12 +50,20 @@ void flow_ports_start(const flow *f, const flow_node *from, flow_port_walk *out)
     out->from = from;
     out->depth = out->at = 0;
     out->tree = NULL;
+    out->has_cuts = 0;
     out->end = f->scene->zones[from->zone].portal_count;
     if (tree == SCENE_NONE) return;
     out->tree = &f->trees[tree];
     out->end = 0;
     out->stack[out->depth++] = 0;
-    for (uint32_t i = 0; i < from->plane_count; i++) out->cuts[i] = flow_cut_at_eye(f, from->planes[i], from->zone);
+    (void)flow_ports_cuts(out);
+}
+
+const cull_cut *flow_ports_cuts(flow_port_walk *w)
+{
+    if (!w->has_cuts) flow_cuts_make(w->f, w->from, w->cuts);
+    w->has_cuts = 1;
+    return w->cuts;
 }
 
 static int is_out_of_reach(const flow_port_walk *w, const tree_box *box)

@@ -32,6 +32,11 @@ static const uint64_t *sort_near_to_far(flow *f)
     return in;
 }
 
+static float float_towards(float to, float f) // to: -1 or 1, the picture's border, which f is not beyond
+{
+    return f == to ? f : to * cull_float_above(to * f);
+}
+
 static void volume_write(flow *f, flow_node *n)
 {
     n->place = f->result.volume_count++;
@@ -40,8 +45,8 @@ static void volume_write(flow *f, flow_node *n)
     *v = (flow_volume){.volume = {n->planes, n->plane_count, 0}, .zone = n->zone, .way = n->way, .parent = n->parent,
                        .is_merged = (n->flags & NODE_MERGED) != 0};
     for (int k = 0; k < 2; k++) { // outward to float, and never beyond the picture
-        v->rectangle[k] = nextafterf((float)n->rectangle.low[k], -1);
-        v->rectangle[2 + k] = nextafterf((float)n->rectangle.high[k], 1);
+        v->rectangle[k] = float_towards(-1, (float)n->rectangle.low[k]);
+        v->rectangle[2 + k] = float_towards(1, (float)n->rectangle.high[k]);
     }
 }
 
@@ -64,16 +69,24 @@ static void parents_link(flow *f)
     }
 }
 
+// Zones are mostly reached near to far: then they stay where they are.
+static flow_zone *zones_sort(flow *f)
+{
+    uint32_t i = 1;
+    while (i < f->found_count && is_after(f, i, i - 1)) i++;
+    if (i >= f->found_count) return f->found;
+    const uint64_t *order = sort_near_to_far(f);
+    for (i = 0; i < f->found_count; i++) f->sorted[i] = f->found[order[i]];
+    return f->sorted;
+}
+
 void flow_finish(flow *f, flow_result *out)
 {
     for (uint32_t i = 0; i < f->found_count; i++) f->found[i].distance = f->states[f->found[i].zone].key;
-    const uint64_t *order = sort_near_to_far(f);
-    for (uint32_t i = 0; i < f->found_count; i++) {
-        f->sorted[i] = f->found[order[i]];
-        zone_write(f, &f->sorted[i]);
-    }
+    flow_zone *zones = zones_sort(f);
+    for (uint32_t i = 0; i < f->found_count; i++) zone_write(f, &zones[i]);
     parents_link(f);
-    f->result.zones = f->sorted;
+    f->result.zones = zones;
     f->result.volumes = f->volumes;
     f->result.by_zone = f->by_zone;
     f->result.zone_count = f->found_count;

@@ -11,18 +11,17 @@ cull_guard flow_guard(const flow *f, uint32_t zone)
 {
     const view_place *z = &f->places[zone];
     cull_guard guard = {.pixel_tangent = f->base.pixel_tangent, .reach = f->base.reach, .radius = (double)z->radius};
-    for (int i = 0; i < 3; i++) {
-        guard.eye[i] = (f->base.camera->eye[i] - z->origin[i]) + 0.0; // never -0, as view_in_zone has it
-        guard.forward[i] = -f->base.back[i];
-    }
+    view_eye_in_zone(&f->base, z, guard.eye);
+    for (int i = 0; i < 3; i++) guard.forward[i] = -f->base.back[i];
     return guard;
 }
 
+// The sides of the picture are known again by the bits of their normals, which are the same in every zone.
 flow_record flow_record_of(const flow *f, cull_plane plane, uint32_t zone)
 {
     flow_record r = {plane, zone};
-    for (uint32_t i = 0; i < f->side_count; i++)
-        if (memcmp(&f->side_floats[i], &plane.normal, sizeof plane.normal) == 0) r.origin = FLOW_ROOT_RECORD + i;
+    for (uint32_t i = 0; i < f->base.side_count; i++)
+        if (memcmp(&f->base.sides[i].facing.normal, &plane.normal, sizeof plane.normal) == 0) r.origin = FLOW_ROOT_RECORD + i;
     return r;
 }
 
@@ -33,12 +32,11 @@ flow_record flow_record_of(const flow *f, cull_plane plane, uint32_t zone)
 // - the true normal was rounded for a: an error of u |n_i| a coordinate of p. a's slack pays for it up to a's radius only,
 //   so here it is paid for b: u |n|_1 radius is the fourth u S, and u |n_i d_i| comes on top.
 // With one origin and no larger radius a's slack serves, bits unchanged.
-static cull_plane plane_moved(const flow *f, const flow_record *r, uint32_t zone)
+static float offset_moved(const view_place *a, const view_place *b, const cull_plane *plane)
 {
-    const view_place *a = &f->places[r->origin], *b = &f->places[zone];
-    if (memcmp(a->origin, b->origin, sizeof a->origin) == 0 && b->radius <= a->radius) return r->plane;
-    const double n[3] = {(double)r->plane.normal.x, (double)r->plane.normal.y, (double)r->plane.normal.z};
-    double offset = (double)r->plane.offset, carried = 0;
+    if (a->origin[0] == b->origin[0] && a->origin[1] == b->origin[1] && a->origin[2] == b->origin[2] && b->radius <= a->radius) return plane->offset;
+    const double n[3] = {(double)plane->normal.x, (double)plane->normal.y, (double)plane->normal.z};
+    double offset = (double)plane->offset, carried = 0;
     for (int i = 0; i < 3; i++) {
         const double along = n[i] * (b->origin[i] - a->origin[i]);
         offset += along;
@@ -47,18 +45,24 @@ static cull_plane plane_moved(const flow *f, const flow_record *r, uint32_t zone
     const double sum = fabs(n[0]) + fabs(n[1]) + fabs(n[2]), unit = 1.0 / 16777216;
     offset += CULL_GUARD_ROUNDING * sum * (double)b->radius + unit * (1 + 1.0 / 1024) * carried + CULL_GUARD_UNDERFLOW;
     const double most = (double)FLT_MAX, wanted = offset > most ? most : offset < -most ? -most : offset;
-    cull_plane out = {r->plane.normal, (float)wanted};
-    if ((double)out.offset < wanted) out.offset = nextafterf(out.offset, FLT_MAX);
-    return out;
+    const float moved = (float)wanted;
+    return (double)moved < wanted ? cull_float_above(moved) : moved;
 }
 
-cull_plane flow_plane_in(const flow *f, const flow_record *r, uint32_t zone)
+void flow_planes_in(const flow *f, uint32_t zone, const flow_record *records, uint32_t count, cull_plane *out)
 {
-    if (r->origin == zone) return r->plane;
-    if (!(r->origin & FLOW_ROOT_RECORD)) return plane_moved(f, r, zone);
-    const uint32_t side = r->origin - FLOW_ROOT_RECORD;
-    const cull_guard guard = flow_guard(f, zone);
-    return cull_guard_plane(&guard, f->side_normals[side], f->side_distances[side]);
+    const view_place *place = &f->places[zone];
+    for (uint32_t i = 0; i < count; i++) {
+        const flow_record *r = &records[i];
+        if (r->origin & FLOW_ROOT_RECORD) {
+            double eye[3];
+            view_eye_in_zone(&f->base, place, eye);
+            out[i] = cull_guarded_at(&f->base.sides[r->origin - FLOW_ROOT_RECORD], eye, (double)place->radius);
+            continue;
+        }
+        out[i].normal = r->plane.normal;
+        out[i].offset = offset_moved(&f->places[r->origin], place, &r->plane);
+    }
 }
 
 // ---- Polygons ----
@@ -78,7 +82,12 @@ static uint32_t count_inside(const flow_polygon *p, cull_cut cut)
     return inside;
 }
 
-flow_polygon flow_clip(const flow *f, uint32_t portal, const flow_node *n)
+void flow_cuts_make(const flow *f, const flow_node *n, cull_cut cuts[CULL_MAX_PLANES])
+{
+    for (uint32_t i = 0; i < n->plane_count; i++) cuts[i] = flow_cut_at_eye(f, n->planes[i], n->zone);
+}
+
+flow_polygon flow_clip(const flow *f, uint32_t portal, const cull_cut *cuts, uint32_t cut_count)
 {
     const scene_portal *p = &f->scene->portals[portal];
     const double *eye = f->base.camera->eye;
@@ -88,12 +97,11 @@ flow_polygon flow_clip(const flow *f, uint32_t portal, const flow_node *n)
         const double *at = f->scene->portal_points[p->first_point + i];
         in[i] = (cull_point){at[0] - eye[0], at[1] - eye[1], at[2] - eye[2]};
     }
-    for (uint32_t i = 0; i < n->plane_count && polygon.count > 0; i++) {
-        const cull_cut cut = flow_cut_at_eye(f, n->planes[i], n->zone);
-        const uint32_t inside = count_inside(&polygon, cut);
+    for (uint32_t i = 0; i < cut_count && polygon.count > 0; i++) {
+        const uint32_t inside = count_inside(&polygon, cuts[i]);
         if (inside == polygon.count) continue;
         if (inside == 0) return (flow_polygon){in, 0};
-        const uint32_t count = cull_polygon_clip(in, polygon.count, cut, out, f->polygon_capacity);
+        const uint32_t count = cull_polygon_clip(in, polygon.count, cuts[i], out, f->polygon_capacity);
         if (count == f->polygon_capacity) continue; // no room, so uncut: larger
         polygon = (flow_polygon){out, count};
         out = in;

@@ -417,6 +417,38 @@ static void zones_find(const graph *g, const probe *q, zone_list *l)
     zone_list_sort(l);
 }
 
+static int hull_reaches(const scene *s, uint32_t hull, const double p[3], double distance)
+{
+    const scene_hull *h = &s->hulls[hull];
+    const scene_solid_plane *planes = &s->hull_planes[h->first_plane];
+    for (uint32_t i = 0; i < h->plane_count; i++) { // as hull_height sums, so that both agree to the last bit
+        const double *n = planes[i].normal;
+        if (((n[0] * p[0] + n[1] * p[1]) + n[2] * p[2]) - planes[i].distance > distance) return 0;
+    }
+    return 1;
+}
+
+// The tree finds a hull that holds the point. That none is near it does not say: a hull's planes may stand that near though
+// its bounds are farther, beyond a sharp edge of it.
+int graph_zone_reaches(const graph *g, uint32_t zone, const double p[3], double distance)
+{
+    const scene_zone *z = &g->scene->zones[zone];
+    const probe q = {{p[0], p[1], p[2]}, {p[0], p[1], p[2]}, distance, distance};
+    const node *nodes = g->nodes + g->hulls[zone].first;
+    for (uint32_t i = 0; i < g->hulls[zone].count;) {
+        const node *n = &nodes[i];
+        if (bounds_miss(n->min, n->max, &q)) {
+            i = n->after;
+            continue;
+        }
+        if (n->item != SCENE_NONE && hull_reaches(g->scene, n->item, p, distance)) return 1;
+        i++;
+    }
+    for (uint32_t h = z->first_hull; h < z->first_hull + z->hull_count; h++)
+        if (hull_reaches(g->scene, h, p, distance)) return 1;
+    return z->hull_count == 0;
+}
+
 static int is_box(const double min[3], const double max[3]) // not of NaN, not turned inside out
 {
     return min[0] <= max[0] && min[1] <= max[1] && min[2] <= max[2];

@@ -25,6 +25,9 @@ uint32_t graph_zones_of_box(const graph *g, const double min[3], const double ma
 // wrote is not said. What a box larger than the scene costs does not grow with the scene. Of NaN:
 // every zone, so that a mover is never lost.
 uint32_t graph_few_zones_of_box(const graph *g, const double min[3], const double max[3], uint32_t *zones, uint32_t capacity);
+// Whether a hull of the zone is `distance` metres or nearer, by its planes: zone_height(...) <= distance, found without looking at
+// all hulls where one of them is. Of a zone without hulls: 1.
+int graph_zone_reaches(const graph *g, uint32_t zone, const double p[3], double distance);
 // Nodes on the longest way down a tree: what a look-up can cost for each zone that it finds, whatever the scene.
 uint32_t graph_depth(const graph *g);
 

@@ -195,6 +195,8 @@ typedef struct scene {
 
 void scene_free(scene *s, const allocator *memory); // NULL is fine
 double scene_radius_m(const scene *s);               // half the diagonal of the scene's box
+// Takes away all that moves, doors' leaves too: the world alone, as other compilers' figures have it. Its doors stay, without leaves.
+void scene_movers_drop(scene *s);
 // Where the mover is at a time of its path, its door in that state.
 void scene_pose_at(const scene *s, uint32_t mover, double time_s, door_state door, scene_pose *out);
 // Holds the mover in that pose, world; for whole poses (no turn) as tight as the geometry.

@@ -86,6 +86,12 @@ static void key_at(const scene_mover *m, const scene_key *keys, double time_s, s
     }
 }
 
+void scene_movers_drop(scene *s)
+{
+    s->mover_count = 0;
+    for (uint32_t i = 0; i < s->door_count; ++i) s->doors[i].mover = SCENE_NONE;
+}
+
 void scene_pose_at(const scene *s, uint32_t mover, double time_s, door_state door, scene_pose *out)
 {
     const scene_mover *m = &s->movers[mover];

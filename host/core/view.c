@@ -120,6 +120,25 @@ void camera_clip_from_eye(const camera *c, double out[16])
     clip_from_eye(c, &s, out);
 }
 
+// The side of the picture where `axis`, turned by `sign`, reaches `tangent`: through the eye, the picture inside.
+static void side_make(view_base *b, const cull_guard *guard, const double axis[3], double sign, double tangent)
+{
+    const double inverse = 1 / sqrt(1 + tangent * tangent);
+    double normal[3];
+    for (int i = 0; i < 3; i++) normal[i] = (sign * axis[i] + tangent * guard->forward[i]) * inverse;
+    b->sides[b->side_count++] = cull_guard_direction(guard, normal, 0);
+}
+
+static void sides_make(view_base *b)
+{
+    const cull_guard guard = {.forward = {-b->back[0], -b->back[1], -b->back[2]}, .pixel_tangent = b->pixel_tangent, .reach = b->reach};
+    for (int sign = -1; sign <= 1; sign += 2) {
+        side_make(b, &guard, b->right, sign, b->wide);
+        side_make(b, &guard, b->up, sign, b->tall);
+    }
+    if (isfinite(b->camera->far_m)) b->sides[b->side_count++] = cull_guard_direction(&guard, b->back, b->camera->far_m);
+}
+
 void view_base_make(const camera *c, const view_frame *f, view_base *out)
 {
     assert(!camera_fault(c) && f->width_px > 0 && f->height_px > 0);
@@ -129,6 +148,7 @@ void view_base_make(const camera *c, const view_frame *f, view_base *out)
     const double tall = out->tall + out->pixel_tangent, wide = out->wide + out->pixel_tangent;
     out->reach = sqrt((tall * tall + wide * wide) + 1);
     clip_from_eye(c, out, out->clip_from_eye);
+    sides_make(out);
 }
 
 double view_plane_height(const cull_plane *p, const cull_box *b)
@@ -139,21 +159,6 @@ double view_plane_height(const cull_plane *p, const cull_box *b)
     double height = (double)p->offset;
     for (int i = 0; i < 3; i++) height += n[i] * (n[i] >= 0 ? low[i] : high[i]);
     return height;
-}
-
-static void volume_add(view_volume *volume, cull_plane plane, const cull_box *zone_box)
-{
-    if (view_plane_height(&plane, zone_box) >= 0) return; // the whole zone is inside
-    volume->planes[volume->plane_count++] = plane;
-}
-
-// The side of the picture where `axis` reaches `tangent`: through the eye, the picture inside.
-static void volume_add_side(view_volume *volume, const cull_guard *guard, const double axis[3], double tangent, const cull_box *zone_box)
-{
-    const double inverse = 1 / sqrt(1 + tangent * tangent);
-    double normal[3];
-    for (int i = 0; i < 3; i++) normal[i] = (axis[i] + tangent * guard->forward[i]) * inverse;
-    volume_add(volume, cull_guard_plane(guard, normal, 0), zone_box);
 }
 
 static void matrix_derive(const view_base *b, const double eye[3], float out[16])
@@ -167,30 +172,24 @@ static void matrix_derive(const view_base *b, const double eye[3], float out[16]
     for (int i = 0; i < 16; i++) out[i] = (float)m[i];
 }
 
-static cull_guard guard_in_zone(const view_base *b, const view_place *z)
+void view_eye_in_zone(const view_base *b, const view_place *z, double out[3])
 {
-    cull_guard guard = {.pixel_tangent = b->pixel_tangent, .reach = b->reach, .radius = (double)z->radius};
-    for (int i = 0; i < 3; i++) {
-        guard.eye[i] = (b->camera->eye[i] - z->origin[i]) + 0.0; // never -0
-        guard.forward[i] = -b->back[i];
-    }
-    return guard;
+    for (int i = 0; i < 3; i++) out[i] = (b->camera->eye[i] - z->origin[i]) + 0.0; // never -0
 }
 
 void view_in_zone(const view_base *b, const view_place *z, cull_view *view)
 {
-    const cull_guard guard = guard_in_zone(b, z);
     memset(view, 0, sizeof *view);
+    view_eye_in_zone(b, z, view->eye_exact);
     for (int i = 0; i < 3; i++) {
-        view->eye[i] = (float)guard.eye[i];
-        view->eye_exact[i] = guard.eye[i];
-        view->forward[i] = guard.forward[i];
+        view->eye[i] = (float)view->eye_exact[i];
+        view->forward[i] = -b->back[i];
     }
     view->eye[3] = 1;
     view->eye_exact[3] = 1;
-    view->pixel_tangent = guard.pixel_tangent;
-    view->reach = guard.reach;
-    matrix_derive(b, guard.eye, view->clip_from_zone);
+    view->pixel_tangent = b->pixel_tangent;
+    view->reach = b->reach;
+    matrix_derive(b, view->eye_exact, view->clip_from_zone);
     view->pixels_per_tangent = (float)(b->frame.height_px / (2 * b->tall));
     view->near_distance = (float)b->camera->near_m;
     view->width_px = b->frame.width_px;
@@ -202,16 +201,15 @@ void view_in_zone(const view_base *b, const view_place *z, cull_view *view)
 
 void view_volume_in_zone(const view_base *b, const view_place *z, view_volume *volume)
 {
-    const cull_guard guard = guard_in_zone(b, z);
+    double eye[3];
+    view_eye_in_zone(b, z, eye);
     volume->plane_count = 0;
-    for (int side = -1; side <= 1; side += 2) {
-        double axis[3];
-        for (int i = 0; i < 3; i++) axis[i] = side * b->right[i];
-        volume_add_side(volume, &guard, axis, b->wide, &z->box);
-        for (int i = 0; i < 3; i++) axis[i] = side * b->up[i];
-        volume_add_side(volume, &guard, axis, b->tall, &z->box);
+    for (uint32_t i = 0; i < b->side_count; i++) {
+        const cull_plane plane = cull_guarded_at(&b->sides[i], eye, (double)z->radius);
+        if (view_plane_height(&plane, &z->box) >= 0) continue; // the whole zone is inside
+        volume->sides[volume->plane_count] = i;
+        volume->planes[volume->plane_count++] = plane;
     }
-    if (isfinite(b->camera->far_m)) volume_add(volume, cull_guard_plane(&guard, b->back, b->camera->far_m), &z->box);
 }
 
 void view_derive(const camera *c, const view_frame *f, const double zone_origin[3], const cull_box *zone_box, cull_view *view,

@@ -4,6 +4,7 @@
 #define PORTCULLIS_HOST_VIEW_H
 
 #include <portcullis/culler.h>
+#include <portcullis/plane.h>
 
 // World coordinates, metres. forward and up need not be normal or perpendicular.
 typedef struct camera {
@@ -26,8 +27,11 @@ typedef struct view_frame {
     cull_purpose purpose;
 } view_frame;
 
+enum { VIEW_SIDES_MOST = 5 }; // left, bottom, right, top of the picture, and the far plane while far_m is finite
+
 typedef struct view_volume {
-    cull_plane planes[CULL_MAX_PLANES];
+    cull_plane planes[VIEW_SIDES_MOST];
+    uint32_t sides[VIEW_SIDES_MOST]; // of the base: which one each plane is
     uint32_t plane_count;
 } view_volume;
 
@@ -39,9 +43,12 @@ typedef struct view_base {
     double tall, wide;            // half the picture at distance 1
     double pixel_tangent, reach;  // as in cull_view
     double clip_from_eye[16];
+    cull_guarded sides[VIEW_SIDES_MOST]; // guarded: in each zone they have the same normal, bit for bit
+    uint32_t side_count;
 } view_base;
 void view_base_make(const camera *c, const view_frame *f, view_base *out);
 typedef struct view_place { double origin[3]; cull_box box; float radius; } view_place; // a zone, as a view sees it
+void view_eye_in_zone(const view_base *b, const view_place *z, double out[3]); // relative to the zone's origin
 void view_in_zone(const view_base *b, const view_place *z, cull_view *out);
 void view_volume_in_zone(const view_base *b, const view_place *z, view_volume *out); // the whole frustum, as in view_derive
 

@@ -185,6 +185,15 @@ static size_t viewer_bytes(const chain *c)
     return sizeof(viewer) + c->stage_count * sizeof(viewer_stage);
 }
 
+static const cull_sight *sight_of(const chain *c)
+{
+    uint32_t crosser = 1;
+    while (crosser < c->stage_count && c->stages[crosser].role != ROLE_CROSS) ++crosser;
+    if (crosser >= c->stage_count) return NULL;
+    const cull_sight *sight = c->stages[0].plugin->get_extension(c->stages[0].culler, CULL_EXT_SIGHT);
+    return sight && sight->part ? sight : NULL;
+}
+
 result viewer_open(const viewer_request *q, report *r, viewer **out)
 {
     const allocator *memory = q->services->memory;
@@ -201,6 +210,7 @@ result viewer_open(const viewer_request *q, report *r, viewer **out)
     v->checks = VIEWER_CHECK_ALL;
 #endif
     choose_stages(v->chain, &v->first, &v->last);
+    v->sight = sight_of(v->chain);
     result done = open_queries(v, r);
     if (done == RESULT_OK && (!open_stages(v, q) || !open_lists(v, q))) done = report_no_memory(r, NULL);
     if (done != RESULT_OK) {

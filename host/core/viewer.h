@@ -80,6 +80,7 @@ typedef struct batch_check {
 
 typedef struct viewer {
     const chain *chain;
+    const cull_sight *sight;    // of its select, where it has one and a crosser
     const shared_place *shared; // chain->data->shared_count, ascending
     const allocator *memory;
     report *log;

@@ -15,24 +15,39 @@ static void append_run(viewer *v, uint32_t first, uint32_t end)
     else v->is_crowded = 1;
 }
 
-static uint32_t first_shared_from(const viewer *v, uint32_t place)
+// The zone's shared items, passed in the order of its runs: most cullers give them ascending, and then the next is near.
+// at: the first at `place` or behind it, which stands at `next`.
+typedef struct shared_cursor { uint32_t at, place, next; } shared_cursor;
+
+static void shared_seek(const viewer *v, uint32_t place, shared_cursor *c)
 {
-    uint32_t low = 0, high = v->chain->data->shared_count;
+    enum { NEAR = 8 };
+    uint32_t low = place < c->place ? 0 : c->at, high = v->chain->data->shared_count;
+    const uint32_t near = high - low < NEAR ? high : low + NEAR;
+    c->place = place;
+    while (low < near && v->shared[low].place < place) ++low;
+    if (low < near) high = low;
     while (low < high) {
         const uint32_t middle = low + (high - low) / 2;
         if (v->shared[middle].place < place) low = middle + 1;
         else high = middle;
     }
-    return low;
+    c->at = low;
+    c->next = low < v->chain->data->shared_count ? v->shared[low].place : UINT32_MAX;
 }
 
 // Without the items that another zone has drawn already; those left become this zone's. Marked when visible, not when
 // looked at: else a zone that only tested an item would take it from the one that sees it.
-static void append_cut(viewer *v, const viewer_frame *f, cull_run run)
+static void append_cut(viewer *v, const viewer_frame *f, cull_run run, shared_cursor *c)
 {
     const uint32_t shared_count = v->chain->data->shared_count, zone = v->chain->data->index, end = run.first + run.count;
     uint32_t first = run.first;
-    for (uint32_t i = first_shared_from(v, first); i < shared_count && v->shared[i].place < end; ++i) {
+    if (first >= c->place && end <= c->next) {
+        append_run(v, first, end);
+        return;
+    }
+    shared_seek(v, first, c);
+    for (uint32_t i = c->at; i < shared_count && v->shared[i].place < end; ++i) {
         shared_stamp *stamp = &f->stamps[v->shared[i].number];
         if (stamp->serial == f->serial && stamp->zone != zone) {
             append_run(v, first, v->shared[i].place);
@@ -64,11 +79,12 @@ static void take_runs(viewer *v, const viewer_frame *f, uint32_t earlier_runs)
         v->out_count = v->batch.run_count;
         return;
     }
+    shared_cursor at = {0, 0, 0};
     v->out = v->drawn.items;
     for (uint32_t i = earlier_runs; i < v->batch.run_count; ++i) {
         if (runs[i].first >= items) mark_slots(v, f, runs[i]);
         else if (is_plain) append_run(v, runs[i].first, runs[i].first + runs[i].count);
-        else append_cut(v, f, runs[i]);
+        else append_cut(v, f, runs[i], &at);
     }
 }
 
@@ -83,7 +99,7 @@ static void draw_whole(viewer *v, const viewer_frame *f)
         return;
     }
     v->out = v->drawn.items;
-    append_cut(v, f, v->whole);
+    append_cut(v, f, v->whole, &(shared_cursor){0, 0, 0});
 }
 
 static void tell_fault(viewer *v, const viewer_frame *f, uint32_t stage, const char *what)

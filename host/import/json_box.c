@@ -1,10 +1,16 @@
 // Boxes of a JSON scene: their keys, and their faces.
 // SPDX-License-Identifier: MIT
 #include "json_scene.h"
+#include "map_texture.h"
 
 #include <string.h>
 
 static const char *const face_names[] = {"-x", "+x", "-y", "+y", "-z", "+z", NULL};
+
+uint32_t material_flags_of_name(const char *name)
+{
+    return texture_material_flags(texture_kind_of((map_word){name, strlen(name)})) & MATERIAL_TRANSLUCENT; // others need textures, or are tools
+}
 
 static result read_omitted(const json_node *box, uint32_t *out)
 {

@@ -143,7 +143,7 @@ static result read_box(const json_entry *e)
     result done = box_read(&e->node, keys, &box);
     if (done != RESULT_OK) return done;
     done = object_of(e, "boxes", &w.object);
-    if (done == RESULT_OK) done = scene_builder_material(b, box.material, strlen(box.material), 0, &w.material);
+    if (done == RESULT_OK) done = scene_builder_material(b, box.material, strlen(box.material), material_flags_of_name(box.material), &w.material);
     for (int f = 0; f < BOX_FACES && done == RESULT_OK; ++f) {
         if (!box_has_face(&box, f)) continue;
         box_face(&box, f, points);
@@ -175,7 +175,7 @@ static result read_wall(const json_entry *e)
     fault = polygon_plane(w.points, count, w.plane);
     if (fault) return node_fault(&list, "the wall %s", fault);
     done = object_of(e, "walls", &w.object);
-    if (done == RESULT_OK) done = scene_builder_material(b, material, strlen(material), 0, &w.material);
+    if (done == RESULT_OK) done = scene_builder_material(b, material, strlen(material), material_flags_of_name(material), &w.material);
     if (done == RESULT_OK) done = add_wall(b, &w);
     return entry_told(e, done, "wall", NULL);
 }

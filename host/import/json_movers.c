@@ -81,7 +81,7 @@ static result add_model(const json_entry *e, const scene *s, mover_shape *shape)
 static result add_box(const json_entry *e, const json_box *box, mover_shape *shape)
 {
     scene_builder *b = e->scene->job->builder;
-    result done = scene_builder_material(b, box->material, strlen(box->material), 0, &shape->item.material);
+    result done = scene_builder_material(b, box->material, strlen(box->material), material_flags_of_name(box->material), &shape->item.material);
     for (int f = 0; f < BOX_FACES && done == RESULT_OK; ++f) {
         double points[4][3];
         uint32_t first = 0;

@@ -86,6 +86,7 @@ typedef enum box_side { BOX_OUT, BOX_IN } box_side; // where its faces look
 enum { BOX_FACES = 6 };                             // -x, +x, -y, +y, -z, +z
 typedef struct json_box { double min[3], max[3]; const char *material; box_side side; uint32_t omitted; } json_box; // omitted: bit a face
 result box_read(const json_node *n, const char *const *known_keys, json_box *out);
+uint32_t material_flags_of_name(const char *name); // MATERIAL_*: what starts with * is see-through, as in a .map
 int box_has_face(const json_box *b, int face);                         // not omitted, and with an area
 void box_face(const json_box *b, int face, double (*out_points)[3]); // 4, counterclockwise from where it looks
 result entry_no_memory(const json_entry *e);

@@ -78,15 +78,21 @@ result camera_path_parse(const char *path, const char *text, size_t size, const 
 
 // ---- Automatic ----
 
-typedef enum auto_kind { AUTO_NONE, AUTO_VIEWS, AUTO_WALK } auto_kind;
+typedef enum auto_kind { AUTO_VIEWS, AUTO_WALK, AUTO_EDGES, AUTO_NONE } auto_kind;
+static const char *const auto_starts[AUTO_NONE] = {"auto:", "auto:walk:", "auto:edges:"};
 
 static auto_kind auto_kind_of(const char *what, const char **out_count)
 {
-    static const char views[] = "auto:", walk[] = "auto:walk:";
-    const int is_walk = strncmp(what, walk, sizeof walk - 1) == 0;
-    if (strncmp(what, views, sizeof views - 1) != 0) return AUTO_NONE;
-    *out_count = what + (is_walk ? sizeof walk : sizeof views) - 1;
-    return is_walk ? AUTO_WALK : AUTO_VIEWS;
+    auto_kind kind = AUTO_NONE;
+    size_t longest = 0; // each starts like the first
+    for (auto_kind k = AUTO_VIEWS; k < AUTO_NONE; ++k) {
+        const size_t length = strlen(auto_starts[k]);
+        if (strncmp(what, auto_starts[k], length) != 0 || length < longest) continue;
+        kind = k;
+        longest = length;
+    }
+    *out_count = what + longest;
+    return kind;
 }
 
 static uint32_t read_count(const char *text)
@@ -102,12 +108,13 @@ static uint32_t read_count(const char *text)
 
 static result make_automatic(auto_kind kind, uint32_t count, const scene *s, double aspect, const allocator *memory, report *r, camera_path *out)
 {
+    static result (*const makers[AUTO_NONE])(auto_views *, uint32_t, camera *) = {auto_views_make, auto_walk_make, auto_edges_make};
     auto_views a;
     camera *cameras = memory_alloc(memory, count, sizeof *cameras);
     if (!cameras) return report_no_memory(r, s->path);
     result done = auto_views_open(s, aspect, memory, r, &a);
     if (done == RESULT_OK) {
-        done = kind == AUTO_WALK ? auto_walk_make(&a, count, cameras) : auto_views_make(&a, count, cameras);
+        done = makers[kind](&a, count, cameras);
         auto_views_close(&a);
     }
     if (done != RESULT_OK) {
@@ -115,7 +122,7 @@ static result make_automatic(auto_kind kind, uint32_t count, const scene *s, dou
         return done;
     }
     *out = (camera_path){.cameras = cameras, .count = count};
-    snprintf(out->name, sizeof out->name, kind == AUTO_WALK ? "auto:walk:%u" : "auto:%u", count);
+    snprintf(out->name, sizeof out->name, "%s%u", auto_starts[kind], count);
     return RESULT_OK;
 }
 
@@ -150,7 +157,7 @@ result camera_path_load(const char *what, const scene *s, double aspect, const a
     const auto_kind kind = auto_kind_of(what, &number);
     if (kind != AUTO_NONE) {
         const uint32_t count = read_count(number);
-        if (!count) return report_error(r, NULL, 0, "--views %s: write auto:N or auto:walk:N, N from 1 to 100000", what);
+        if (!count) return report_error(r, NULL, 0, "--views %s: write auto:N or auto:walk:N or auto:edges:N, N from 1 to 100000", what);
         return make_automatic(kind, count, s, aspect, memory, r, out);
     }
     static const char of_scene[] = "path:";

@@ -1,4 +1,4 @@
-// Camera paths: .views files, those of the scene, and the repeatable automatic views auto:N and auto:walk:N.
+// Camera paths: .views files, those of the scene, and the repeatable automatic views auto:N, auto:walk:N and auto:edges:N.
 // SPDX-License-Identifier: MIT
 #ifndef PORTCULLIS_HOST_VIEWS_H
 #define PORTCULLIS_HOST_VIEWS_H
@@ -12,7 +12,7 @@ typedef struct camera_path {
     char name[128]; // "city.views" -> "city", "auto:100", "auto:walk:300": for bench names
 } camera_path;
 
-// `what` is a file name, "auto:N", "auto:walk:N", "path:NAME" (one of the scene's) or "path:" (its first). aspect: of the
+// `what` is a file name, "auto:N", "auto:walk:N", "auto:edges:N" (eyes on portals and in planes of walls, or beside by ulps), "path:NAME" (one of the scene's) or "path:" (its first). aspect: of the
 // picture, for automatic views only.
 result camera_path_load(const char *what, const scene *s, double aspect, const allocator *memory, report *r, camera_path *out);
 result camera_path_parse(const char *path, const char *text, size_t size, const allocator *memory, report *r, camera_path *out);

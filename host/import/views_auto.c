@@ -55,7 +55,7 @@ static double random_pitch(random_stream *r)
 
 // ---- Places of a map ----
 
-static int is_in_air(const auto_views *a, const double at[3])
+int auto_is_in_air(const auto_views *a, const double at[3])
 {
     return free_space_clearance(a->space, at, AUTO_CLEARANCE_M, SPACE_SOLIDS | SPACE_TRIANGLES | SPACE_BOXES) >= AUTO_CLEARANCE_M &&
            free_space_clearance(a->space, at, AUTO_CLEARANCE_M, SPACE_LIQUIDS) > 0;
@@ -70,7 +70,7 @@ static result find_places(auto_views *a)
         if (s->places[i].kind != PLACE_OTHER) e.at[1] += FIGURE_EYE_M;
         int inside = 1; // a place outside of all geometry sees nothing of the level
         for (int k = 0; k < 3; ++k) inside &= e.at[k] >= a->low[k] && e.at[k] <= a->high[k];
-        if (inside && is_in_air(a, e.at) && !buffer_append(&a->places, &e, 1)) return report_no_memory(a->report, s->path);
+        if (inside && auto_is_in_air(a, e.at) && !buffer_append(&a->places, &e, 1)) return report_no_memory(a->report, s->path);
     }
     eye *places = a->places.items;
     for (uint32_t i = (uint32_t)a->places.count; i > 1; --i) { // Fisher and Yates
@@ -315,6 +315,12 @@ static int find_eye(auto_views *a, uint32_t i, eye *out)
         return 0;
     }
     return 1;
+}
+
+eye auto_place(auto_views *a, uint32_t i)
+{
+    const eye *places = a->places.items;
+    return a->places.count ? places[i % a->places.count] : auto_spread_eye(a, i);
 }
 
 result auto_views_make(auto_views *a, uint32_t count, camera *cameras)

@@ -1,4 +1,5 @@
-// Automatic views: where an eye may stand, and the cameras made of such places. Between views_auto.c and views_walk.c.
+// Automatic views: where an eye may stand, and the cameras made of such places. Between views_auto.c, views_walk.c
+// and views_edges.c.
 // SPDX-License-Identifier: MIT
 // Invariant: nothing but constants and the scene's own data enters, so the same scene gives the same views; and of the
 // movers only their solids, which stand both shut and open, so doors change no view.
@@ -37,7 +38,11 @@ int auto_is_ground(const auto_views *a); // 1 for a wide low scene, to stand on;
 // A place spread over the scene: number i of any count. Never fails: over the scene there is room.
 eye auto_spread_eye(auto_views *a, uint32_t i);
 
+int auto_is_in_air(const auto_views *a, const double at[3]); // AUTO_CLEARANCE_M from all that is solid, and not in a liquid
+eye auto_place(auto_views *a, uint32_t i);                   // number i of the entities' places, in turns; without any a spread one
+
 result auto_views_make(auto_views *a, uint32_t count, camera *cameras);
 result auto_walk_make(auto_views *a, uint32_t count, camera *cameras);
+result auto_edges_make(auto_views *a, uint32_t count, camera *cameras); // BAD_INPUT, reported: no place for one
 
 #endif

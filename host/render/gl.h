@@ -150,16 +150,20 @@ void item_box(const renderer *g, uint32_t item, mover_box *out); // of any item,
 
 // ---- The scene on the GPU (upload.c) ----
 
+typedef struct vertex_buffers { GLuint positions, words, triangles, texcoords, normals, others, movers; } vertex_buffers; // 0: not needed
+
 typedef struct scene_gpu {
     const scene *scene; // NULL: none
     GLuint vertices;    // vertex array, with the index buffer in the scene's order
-    GLuint positions, words, triangles, texcoords, normals, others, movers, elements;
+    vertex_buffers buffers;
+    GLuint elements;
     GLuint materials, triangle_items, item_zones, seen;
     uint32_t *indices;         // each triangle turned so that its last vertex is its own
     uint32_t *see_through;     // items with translucent triangles, ascending
     uint8_t *is_see_through;   // per item
     uint32_t see_through_count;
     uint32_t index_count, triangle_count, item_total; // movers too
+    uint32_t vertex_count; // of buffers
     uint32_t variant;          // VARIANT_CUT_OUT, VARIANT_TRANSLUCENT, VARIANT_MOVERS as the scene needs
     uint32_t has_two_sided;    // an opaque triangle of a two-sided item
     uint32_t *box_items;       // item_total: scratch of the floor
@@ -170,7 +174,8 @@ typedef struct scene_gpu {
 } scene_gpu;
 
 void scene_release(renderer *g);
-// A vertex array over the scene's vertices and the given index buffer.
+// A vertex array over vertices and the given index buffer.
+GLuint vertex_array_of(const vertex_buffers *buffers, GLuint elements);
 GLuint scene_vertex_array(const renderer *g, GLuint elements);
 
 // ---- Where it is seen from (viewpoint.c) ----
@@ -258,6 +263,7 @@ typedef struct layout_zone {
 } layout_zone;
 
 typedef struct picture_slot picture_slot;
+typedef struct layout_pieces layout_pieces; // pieces.h
 struct render_layout {
     renderer *g;
     render_layout *next; // of the renderer's
@@ -267,6 +273,7 @@ struct render_layout {
     uint32_t *first_index; // of each place, movers behind; one more at the end
     uint32_t *see_through; // places before this one that are; NULL: none is
     picture_slot *slots;
+    layout_pieces *pieces; // NULL: see-through items go by distance
     uint32_t zone_count, place_count, total, slot_count; // total: places and movers
 };
 
@@ -293,6 +300,7 @@ typedef struct translucent_item {
     const render_layout *layout;
     pixel_box cut;
     uint32_t place, item; // item: global id, the same whatever the layout
+    uint32_t zone, rank;  // or LAYOUT_MOVERS; rank: what has a lower one is drawn before, whatever the distance
 } translucent_item;
 
 typedef struct frame_state {
@@ -328,6 +336,7 @@ void cut_begin(renderer *g, const pixel_box *cut);        // until the end the p
 void cut_end(renderer *g, const pixel_box *cut);
 void translucent_note(renderer *g, const layout_runs *r);
 void translucent_draw(renderer *g);
+void translucent_sort(translucent_item *items, uint32_t count); // by rank, then farthest first, then by global id
 
 // ---- Pictures (capture.c) ----
 

@@ -67,6 +67,12 @@ result render_layout_open(renderer *g, const render_layout_zone *zones, uint32_t
 // After a swap of the zone's chain, not within a frame: the same items in another order. Writes that zone's part only.
 // Pictures and tests of the zone are forgotten. RESULT_NO_MEMORY: nothing changed.
 result render_layout_reorder(render_layout *l, uint32_t zone, const uint32_t *items, report *r);
+// By zone: what its chain's select lends (host/core/pieces.h), NULL: nothing; not within a frame. Borrowed until the next call,
+// until a reorder of the zone, which forgets its pieces, or until the layout closes. See-through items of such zones are drawn in
+// exact order: whole where planes tell who is behind whom, else piece by piece; zones in the order of the portals between them;
+// items without pieces, and movers, by the distance of their middles. Takes all memory that frames need.
+// RESULT_NO_MEMORY, RESULT_NO_GL: a line, and everything goes by distance.
+result render_layout_pieces(render_layout *l, const cull_pieces *const *pieces, report *r);
 void render_layout_close(render_layout *l); // NULL is fine; before the renderer
 
 // RENDER_IDS is for checks, not for people: owners as an id picture has them, drawn through the layout. Nothing that is

@@ -1,6 +1,7 @@
-// Translucent items of a frame: noted while runs are drawn, drawn behind all that is opaque, farthest first.
+// Translucent items of a frame: noted while runs are drawn, drawn behind all that is opaque, farthest first: by their distance, or in
+// exact order where the layout has pieces (pieces_draw.c).
 // SPDX-License-Identifier: MIT
-#include "gl.h"
+#include "pieces.h"
 
 static double distance2_of(const renderer *g, uint32_t item)
 {
@@ -22,7 +23,8 @@ static void note(renderer *g, const layout_runs *r, uint32_t place)
         translucent_draw(g);
     }
     const uint32_t item = layout_item(r->layout, place);
-    f->translucent[f->translucent_count++] = (translucent_item){distance2_of(g, item), r->layout, frame_cut(g, r->zone), place, item};
+    f->translucent[f->translucent_count++] = (translucent_item){
+        .distance2 = distance2_of(g, item), .layout = r->layout, .cut = frame_cut(g, r->zone), .place = place, .item = item, .zone = r->zone};
 }
 
 void translucent_note(renderer *g, const layout_runs *r)
@@ -41,6 +43,7 @@ void translucent_note(renderer *g, const layout_runs *r)
 // Farthest first; at one distance by global id, so no culler's order shows.
 static int stands_before(const translucent_item *a, const translucent_item *b)
 {
+    if (a->rank != b->rank) return a->rank < b->rank;
     return a->distance2 != b->distance2 ? a->distance2 > b->distance2 : a->item < b->item;
 }
 
@@ -56,7 +59,7 @@ static void sift_down(translucent_item *items, uint32_t root, uint32_t count)
 }
 
 // Heap sort (Williams 1964), as the C library's qsort may allocate.
-static void sort(translucent_item *items, uint32_t count)
+void translucent_sort(translucent_item *items, uint32_t count)
 {
     for (uint32_t root = count / 2; root-- > 0;) sift_down(items, root, count);
     for (uint32_t end = count; end-- > 1;) {
@@ -72,16 +75,21 @@ static int share_a_draw(const translucent_item *a, const translucent_item *b)
     return a->layout == b->layout && a->cut.x == b->cut.x && a->cut.y == b->cut.y && a->cut.width == b->cut.width && a->cut.height == b->cut.height;
 }
 
-void translucent_draw(renderer *g)
+// Whose all of it is, where it has pieces; NULL: it goes by distance.
+static render_layout *layout_with_pieces(const frame_state *f)
+{
+    const render_layout *l = f->translucent[0].layout;
+    for (uint32_t i = 1; i < f->translucent_count; ++i)
+        if (f->translucent[i].layout != l) return NULL;
+    return l->pieces ? (render_layout *)(uintptr_t)l : NULL; // a frame's scratch hangs on it
+}
+
+static void draw_by_distance(renderer *g)
 {
     frame_state *f = &g->frame;
     ranges *a = &g->scene.ranges;
-    if (f->translucent_count == 0) return;
-    sort(f->translucent, f->translucent_count);
-    frame_bind(g);
-    const GLuint program = frame_pass(g, &(draw_pass){.view = &f->view}, WORD_TRANSLUCENT);
-    if (program) frame_state_pass(g, BLEND_MIX, DEPTH_OFF);
-    for (uint32_t i = 0; program && i < f->translucent_count; ++i) {
+    translucent_sort(f->translucent, f->translucent_count);
+    for (uint32_t i = 0; i < f->translucent_count; ++i) {
         const translucent_item *t = &f->translucent[i];
         const uint32_t first = t->layout->first_index[t->place];
         ranges_add(a, first, t->layout->first_index[t->place + 1] - first);
@@ -90,6 +98,19 @@ void translucent_draw(renderer *g)
         cut_begin(g, &t->cut);
         ranges_draw(g, a);
         cut_end(g, &t->cut);
+    }
+}
+
+void translucent_draw(renderer *g)
+{
+    frame_state *f = &g->frame;
+    if (f->translucent_count == 0) return;
+    frame_bind(g);
+    if (frame_pass(g, &(draw_pass){.view = &f->view}, WORD_TRANSLUCENT)) {
+        frame_state_pass(g, BLEND_MIX, DEPTH_OFF);
+        render_layout *l = layout_with_pieces(f);
+        if (l) pieces_draw_all(g, l);
+        else draw_by_distance(g);
     }
     f->translucent_count = 0;
 }

@@ -228,14 +228,15 @@ static result upload_vertices(scene_gpu *p, upload *u, const allocator *memory)
     result turned = turn_triangles(u, p->indices);
     if (turned == RESULT_OK) turned = part_movers(u, p->indices, memory);
     if (turned != RESULT_OK) return turned;
-    p->positions = attribute_of(u, s->positions, sizeof *s->positions, memory);
-    p->words = words_of(u, p->indices, memory);
-    p->triangles = triangles_of(u, memory);
-    p->others = others_of(u, p->indices, memory);
-    if (!p->positions || !p->words || !p->triangles || !p->others) return RESULT_NO_MEMORY;
-    if (s->mover_count && !(p->movers = movers_of(u, p->indices, memory))) return RESULT_NO_MEMORY;
-    if (s->texcoords && !(p->texcoords = attribute_of(u, s->texcoords, 2 * sizeof(float), memory))) return RESULT_NO_MEMORY;
-    if (s->normals && !(p->normals = attribute_of(u, s->normals, sizeof(uint32_t), memory))) return RESULT_NO_MEMORY;
+    p->vertex_count = s->position_count + (uint32_t)u->doubled.count;
+    p->buffers.positions = attribute_of(u, s->positions, sizeof *s->positions, memory);
+    p->buffers.words = words_of(u, p->indices, memory);
+    p->buffers.triangles = triangles_of(u, memory);
+    p->buffers.others = others_of(u, p->indices, memory);
+    if (!p->buffers.positions || !p->buffers.words || !p->buffers.triangles || !p->buffers.others) return RESULT_NO_MEMORY;
+    if (s->mover_count && !(p->buffers.movers = movers_of(u, p->indices, memory))) return RESULT_NO_MEMORY;
+    if (s->texcoords && !(p->buffers.texcoords = attribute_of(u, s->texcoords, 2 * sizeof(float), memory))) return RESULT_NO_MEMORY;
+    if (s->normals && !(p->buffers.normals = attribute_of(u, s->normals, sizeof(uint32_t), memory))) return RESULT_NO_MEMORY;
     p->elements = buffer_of(p->indices, s->index_count * sizeof(uint32_t));
     return RESULT_OK;
 }
@@ -258,7 +259,7 @@ static void look_at_item(scene_gpu *p, const upload *u, uint32_t item, uint32_t 
         triangle_items[t] = item;
         if (flags & WORD_TRANSLUCENT) p->is_see_through[item] = 1;
         else if (it->flags & CULL_ITEM_TWO_SIDED) p->has_two_sided = 1;
-        if (flags & WORD_CUT_OUT && p->texcoords) p->variant |= VARIANT_CUT_OUT;
+        if (flags & WORD_CUT_OUT && p->buffers.texcoords) p->variant |= VARIANT_CUT_OUT;
     }
     if (!p->is_see_through[item]) return;
     p->see_through[p->see_through_count++] = item;
@@ -328,9 +329,8 @@ static void attribute(GLuint vertices, GLuint place, GLuint buffer, GLsizei stri
     glEnableVertexArrayAttrib(vertices, place);
 }
 
-GLuint scene_vertex_array(const renderer *g, GLuint elements)
+GLuint vertex_array_of(const vertex_buffers *p, GLuint elements)
 {
-    const scene_gpu *p = &g->scene;
     GLuint name = 0;
     glCreateVertexArrays(1, &name);
     attribute(name, 0, p->positions, 12);
@@ -358,6 +358,11 @@ GLuint scene_vertex_array(const renderer *g, GLuint elements)
     }
     glVertexArrayElementBuffer(name, elements);
     return name;
+}
+
+GLuint scene_vertex_array(const renderer *g, GLuint elements)
+{
+    return vertex_array_of(&g->scene.buffers, elements);
 }
 
 static result fits_driver(const scene *s, report *r)
@@ -399,8 +404,9 @@ void scene_release(renderer *g)
     scene_gpu *p = &g->scene; // the scene itself may be gone already
     if (!p->scene) return;
     frame_flush(g);
-    const GLuint buffers[] = {p->positions, p->words, p->triangles, p->texcoords, p->normals, p->others, p->movers,
-                              p->elements, p->materials, p->triangle_items, p->item_zones, p->seen, p->counts};
+    const vertex_buffers *v = &p->buffers;
+    const GLuint buffers[] = {v->positions, v->words, v->triangles, v->texcoords, v->normals, v->others, v->movers, p->elements,
+                              p->materials, p->triangle_items, p->item_zones, p->seen, p->counts};
     glDeleteVertexArrays(1, &p->vertices);
     glDeleteBuffers((GLsizei)(sizeof buffers / sizeof *buffers), buffers);
     memory_free(g->memory, p->indices, p->index_count, sizeof *p->indices);

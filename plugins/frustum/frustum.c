@@ -106,10 +106,20 @@ static run_list select_volumes(const cull_culler *c, const cull_visit *visit, ru
     return found;
 }
 
+static int is_small(const frustum_index *index, const cull_visit *visit)
+{
+    return index->level_count <= WALK_SMALL_LEVELS && visit->volume_count <= WALK_SMALL_VOLUMES;
+}
+
 static cull_progress frustum_select(cull_query *q, const cull_visit *visit, cull_batch *batch)
 {
     const cull_culler *c = q->culler;
     cull_run *const out = batch->runs + batch->run_count;
+    if (is_small(&c->index, visit)) {
+        const small_query all = {visit->volumes, visit->view->eye, visit->volume_count};
+        batch->run_count += c->kernel->small(&c->index, &all, out, &batch->nodes_visited);
+        return CULL_DONE;
+    }
     const run_list a = {visit->scratch, 0}, b = {(cull_run *)visit->scratch + c->max_runs, 0}, last = {out, 0};
     if (c->index.faces) {
         const run_list touching = select_volumes(c, visit, a, b, last, &batch->nodes_visited);

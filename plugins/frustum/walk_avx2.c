@@ -82,8 +82,9 @@ static inline uint32_t *put16(uint32_t bits, uint32_t base, uint32_t shift, uint
 }
 
 #include "walk_body.h"
+#include "walk_small_body.h"
 
-const walk_kernel walk_avx2 = {"avx2", walk_volume, walk_facing};
+const walk_kernel walk_avx2 = {"avx2", walk_volume, walk_facing, walk_small};
 #else
 typedef int walk_avx2_is_empty;
 #endif

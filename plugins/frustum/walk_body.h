@@ -52,9 +52,9 @@ static inline void walk_leaf(walk *w, uint32_t block, uint32_t planes)
 }
 
 // Judges the children of a node, and asks for the memory of those that are cut.
-static inline void walk_split_node(walk *w, uint32_t level, uint32_t block, uint32_t planes, walk_split *out)
+static inline void walk_split_node(walk *w, uint32_t level, uint32_t block, const walk_plane *planes, uint32_t which, walk_split *out)
 {
-    block_split(block_at(w->index, level, block), w->planes, planes, out);
+    block_split(block_at(w->index, level, block), planes, which, out);
     out->touching &= block_entries(w->index, level, block);
     out->cut &= out->touching;
     w->nodes++;
@@ -74,7 +74,7 @@ static void walk_node(walk *w, uint32_t level, uint32_t block, const walk_split 
     if (level > 1)
         for (uint32_t rest = split->cut; rest; rest &= rest - 1) {
             const uint32_t c = lowest_bit(rest);
-            walk_split_node(w, level - 1, block * INDEX_WIDTH + c, split->planes[c], &below[c]);
+            walk_split_node(w, level - 1, block * INDEX_WIDTH + c, w->planes, split->planes[c], &below[c]);
         }
     uint32_t from = 0;
     for (uint32_t rest = split->cut; rest; rest &= rest - 1) {
@@ -123,7 +123,7 @@ static uint32_t walk_volume(const frustum_index *index, const cull_volume *volum
         walk_leaf(&w, 0, all);
     } else {
         walk_split root;
-        walk_split_node(&w, index->level_count - 1, 0, all, &root);
+        walk_split_node(&w, index->level_count - 1, 0, planes, all, &root);
         walk_node(&w, index->level_count - 1, 0, &root);
     }
     *nodes_visited += w.nodes;

@@ -62,5 +62,6 @@ static inline uint32_t *put16(uint32_t bits, uint32_t base, uint32_t shift, uint
 }
 
 #include "walk_body.h"
+#include "walk_small_body.h"
 
-const walk_kernel walk_plain = {"plain", walk_volume, walk_facing};
+const walk_kernel walk_plain = {"plain", walk_volume, walk_facing, walk_small};

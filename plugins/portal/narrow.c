@@ -54,16 +54,29 @@ static int is_at_eye(const narrowing *n)
     return height < (double)n->view->near_distance * n->view->reach + n->guard.radius * NEAR_SHARE;
 }
 
+// The heights of the polygon's corners above the cut, and between which they lie.
+static extent heights_find(const narrowing *n, cull_cut cut, double *heights)
+{
+    extent e = {INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < n->count; i++) {
+        heights[i] = cull_cut_height(cut, n->polygon[i]);
+        e.least = heights[i] < e.least ? heights[i] : e.least;
+        e.most = heights[i] > e.most ? heights[i] : e.most;
+    }
+    return e;
+}
+
 static void polygon_clip(narrowing *n, narrow_choice choice)
 {
+    double heights[NARROW_ROOM];
     for (uint32_t i = 0; i < n->in->plane_count && n->count > 0; i++) {
-        const extent e = extent_along(n, n->cuts[i]);
+        const extent e = heights_find(n, n->cuts[i], heights);
         n->has_cut[i] = e.least < 0;
         if (e.least >= 0) continue;
         if (e.most < 0) n->count = 0;
         if (e.most < 0 || choice == NARROW_UNCUT) continue;
         cull_point *out = n->points[n->polygon == n->points[0] ? 1 : 0];
-        n->count = cull_polygon_clip(n->polygon, n->count, n->cuts[i], out, NARROW_ROOM);
+        n->count = cull_polygon_clip_at(n->polygon, heights, n->count, out, NARROW_ROOM);
         n->polygon = out;
     }
 }
@@ -115,21 +128,68 @@ static int cutters_add(narrowing *n)
 
 typedef enum edge_choice { EDGES_THAT_BORDER, EDGES_ALL } edge_choice;
 
+static const double BORDER_SHARE = 1.0 / 1048576; // of how far what is left reaches from an edge: nearer, and the edge borders it
+// Of |normal|_1 * |point|_1: 16 times what rounding may make of a height, of the normal's own as well, 5 * 2^-53.
+static const double HEIGHT_DOUBT = 16 * 5.0 / 9007199254740992;
+
+typedef enum verge { VERGE_OFF, VERGE_BORDERS, VERGE_UNSURE } verge;
+
+// Edge i of a polygon that nothing cut has its own two ends at height 0, by rounding: one corner well off it says the rest.
+static int is_whole_and_wide(const narrowing *n, uint32_t i, cull_cut cut, double doubt)
+{
+    if (n->polygon != n->corners) return 0;
+    const uint32_t across = i + (n->count + 1) / 2;
+    return cull_cut_height(cut, n->corners[across < n->count ? across : across - n->count]) * BORDER_SHARE > 2 * doubt;
+}
+
+// What the normal of unit length would say of edge i, without finding it: unsure where its rounding may decide.
+static verge verge_of(const narrowing *n, uint32_t i, const double c[3], double farthest)
+{
+    const cull_cut cut = {c[0], c[1], c[2], 0};
+    const double doubt = HEIGHT_DOUBT * (fabs(c[0]) + fabs(c[1]) + fabs(c[2])) * farthest;
+    if (is_whole_and_wide(n, i, cut, doubt)) return VERGE_BORDERS;
+    const extent e = extent_along(n, cut);
+    if (e.least > e.most * BORDER_SHARE + doubt) return VERGE_OFF;
+    return e.least < e.most * BORDER_SHARE - doubt ? VERGE_BORDERS : VERGE_UNSURE;
+}
+
+static int borders(const narrowing *n, const double normal[3])
+{
+    const extent e = extent_along(n, (cull_cut){normal[0], normal[1], normal[2], 0});
+    return !(e.least > e.most * BORDER_SHARE); // else what is left lies off this edge
+}
+
+static double farthest_of(const narrowing *n)
+{
+    double most = 0;
+    for (uint32_t i = 0; i < n->count; i++) {
+        const cull_point p = n->polygon[i];
+        const double far = fabs(p.x) + fabs(p.y) + fabs(p.z);
+        most = far > most ? far : most;
+    }
+    return most;
+}
+
+static double square_of(cull_point p)
+{
+    return p.x * p.x + p.y * p.y + p.z * p.z;
+}
+
 // Planes through the eye and the portal's edges; from its own corners, so that every path makes the same planes.
 static int edges_add(narrowing *n, edge_choice choice)
 {
     const uint32_t corners = n->portal->point_count;
+    const double farthest = choice == EDGES_THAT_BORDER ? farthest_of(n) : 0;
     for (uint32_t i = 0; i < corners; i++) {
         const cull_point a = n->corners[i], b = n->corners[i + 1 < corners ? i + 1 : 0];
         const double c[3] = {b.y * a.z - b.z * a.y, b.z * a.x - b.x * a.z, b.x * a.y - b.y * a.x};
+        const verge at = choice == EDGES_THAT_BORDER ? verge_of(n, i, c, farthest) : VERGE_BORDERS;
+        if (at == VERGE_OFF) continue;
         const double length = sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]);
-        const double sizes = sqrt((a.x * a.x + a.y * a.y + a.z * a.z) * (b.x * b.x + b.y * b.y + b.z * b.z));
+        const double sizes = sqrt(square_of(a) * square_of(b));
         if (!(length > LEAST_SINE * sizes)) continue;
         const double normal[3] = {c[0] / length, c[1] / length, c[2] / length};
-        if (choice == EDGES_THAT_BORDER) {
-            const extent e = extent_along(n, (cull_cut){normal[0], normal[1], normal[2], 0});
-            if (e.least > e.most / 1048576) continue; // what is left lies off this edge
-        }
+        if (at == VERGE_UNSURE && !borders(n, normal)) continue;
         if (!plane_add(n, cull_guard_plane(&n->guard, normal, 0))) return 0;
     }
     return 1;

@@ -72,6 +72,12 @@ stages_and_times() { # as many times as names
 }
 holds each_stage_has_its_time stages_and_times
 
+# ---- The plan ----
+expect plan 0 '"zones": 2' "$portcullis" compile rooms.map -o rooms.pcs --json --plan rooms.png
+holds plan_is_a_png sh -c 'head -c 4 rooms.png | grep -q PNG'
+expect plan_full 2 '/dev/full: error:' "$portcullis" compile room.map -o no.pcs --plan /dev/full
+expect plan_over_the_input 2 'room.map: error: is the input itself' "$portcullis" compile room.map -o no.pcs --plan room.map
+
 # ---- .prt and .pts ----
 expect prt 0 '"portals": 1' "$portcullis" compile rooms.map -o rooms.pcs --json --prt rooms.prt
 expect prt_is_that_of_the_door 0 '^4 [01] [01] (\(64 (40|88) (0|96) \) ){4}$' sed -n 4p rooms.prt

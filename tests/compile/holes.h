@@ -7,7 +7,7 @@
 
 #define HOLE_MATERIAL "hole"
 
-// Through such a face one looks into the solid, whose inside raw brushes show and a compiled scene does not have. In *out
+// Through such a face one looks into the solid, whose inside raw brushes show; a compiled scene has a wall there. In *out
 // such faces have the material HOLE_MATERIAL. One face a line, as editors write them.
 result holes_import(const char *path, const allocator *memory, report *r, scene **out);
 

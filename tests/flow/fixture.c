@@ -221,7 +221,7 @@ static cull_crossing mixed(void *user, uint32_t zone, const cull_view *view, con
 
 flow_crosser maze_crosser(maze *m, crosser_kind kind)
 {
-    return (flow_crosser){m, kind == CROSSER_FLOOD ? NULL : kind == CROSSER_NARROW ? narrow : mixed};
+    return (flow_crosser){m, kind == CROSSER_FLOOD ? NULL : kind == CROSSER_NARROW ? narrow : mixed, NULL};
 }
 
 camera maze_camera(const maze *m, const double eye[3], const double forward[3], double fovy_deg)

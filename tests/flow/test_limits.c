@@ -113,7 +113,7 @@ static void a_crosser_that_writes_nonsense_does_not_narrow_and_is_counted(void *
     const camera c = maze_camera(&m, (const double[3]){1, 1, 2}, (const double[3]){1, 0, 0}, 60);
     for (lie lie = LIE_MANY; lie <= LIE_NONE; lie++) {
         liar l = {&m, lie};
-        const flow_request q = {.camera = &c, .frame = {320, 240, 0, 0, CULL_VIEW_MAIN}, .open = m.open, .crosser = {&l, lies}};
+        const flow_request q = {.camera = &c, .frame = {320, 240, 0, 0, CULL_VIEW_MAIN}, .open = m.open, .crosser = {&l, lies, NULL}};
         flow_result r;
         flow_run(m.flow, &q, &r);
         if (lie == LIE_NONE) {
@@ -135,7 +135,7 @@ static void where_the_room_for_planes_runs_out_volumes_merge_and_it_is_counted(v
     maze_grid(&m, &(grid_recipe){.wide = 20, .deep = 20, .doors = DOORS_WHOLE_FACE, .seed = 1, .pose = POSE_NONE});
     const camera c = maze_camera(&m, (const double[3]){0.5, 1, 0.5}, (const double[3]){1, 0, 1}, 90);
     liar l = {&m, LIE_PADDED};
-    const flow_request q = {.camera = &c, .frame = {320, 240, 0, 0, CULL_VIEW_MAIN}, .open = m.open, .crosser = {&l, lies}};
+    const flow_request q = {.camera = &c, .frame = {320, 240, 0, 0, CULL_VIEW_MAIN}, .open = m.open, .crosser = {&l, lies, NULL}};
     flow_result r;
     flow_run(m.flow, &q, &r);
     assert_true(r.limits_hit > 0);
@@ -251,7 +251,8 @@ static void a_plane_carried_to_another_zone_keeps_every_point_that_the_exact_one
         for (int k = 0; k < 3; k++) exact += normal[k] * at[k];
         if (exact + offset < 0) continue;
         const flow_record r = {cull_plane_outward(normal, offset, (double)m.zones[from].zone.radius), from};
-        const cull_plane moved = flow_plane_in(m.flow, &r, to);
+        cull_plane moved;
+        flow_planes_in(m.flow, to, &r, 1, &moved);
         const cull_vec3 point = {q[0], q[1], q[2]};
         assert_true(cull_plane_height(moved, point) >= 0);
         inside++;

@@ -411,6 +411,38 @@ static void each_portal_knows_why_it_was_not_crossed(void **state)
     maze_close(&m);
 }
 
+// A light as far as the sun has no eye that planes through a portal's edges could pass: whatever comes goes on as it is.
+static void a_view_from_a_direction_passes_every_portal_unclipped(void **state)
+{
+    (void)state;
+    maze m;
+    maze_grid(&m, &(grid_recipe){.wide = 4, .deep = 3, .doors = DOORS_RANDOM, .seed = 1, .pose = POSE_NONE});
+    const camera c = maze_camera(&m, (const double[3]){5, 1, 2}, (const double[3]){1, 0, 0.2}, 60);
+    const flow_crosser crosser = maze_crosser(&m, CROSSER_NARROW);
+    const cull_plane planes[2] = {{{0, 1, 0}, 5}, {{-1, 0, 0}, 9}};
+    const cull_volume in = {planes, 2, 0};
+    uint32_t asked = 0, narrowed = 0;
+    flow_result r;
+    maze_run(&m, &c, CROSSER_NARROW, &r);
+    for (uint32_t i = 0; i < r.zone_count; i++) {
+        cull_view from_point = r.zones[i].view, from_direction = from_point;
+        const float down[4] = {0.3f, 0.9f, 0.3f, 0};
+        for (int k = 0; k < 4; k++) {
+            from_direction.eye[k] = down[k];
+            from_direction.eye_exact[k] = (double)down[k];
+        }
+        for (uint32_t p = 0; p < m.scene->zones[r.zones[i].zone].portal_count; p++) {
+            cull_plane out[CULL_MAX_PLANES];
+            uint32_t count = 0;
+            assert_int_equal(crosser.cross(crosser.user, r.zones[i].zone, &from_direction, &in, p, out, &count), CULL_CROSS_SAME);
+            narrowed += crosser.cross(crosser.user, r.zones[i].zone, &from_point, &in, p, out, &count) != CULL_CROSS_SAME;
+            asked++;
+        }
+    }
+    assert_true(asked > 5 && narrowed > 0);
+    maze_close(&m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -430,6 +462,7 @@ int main(void)
         cmocka_unit_test(a_house_is_seen_into_from_another_across_the_outdoors),
         cmocka_unit_test(a_portal_with_all_its_corners_behind_the_camera_plane_beside_the_eye_is_not_lost),
         cmocka_unit_test(each_portal_knows_why_it_was_not_crossed),
+        cmocka_unit_test(a_view_from_a_direction_passes_every_portal_unclipped),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -189,11 +189,87 @@ static void every_instruction_set_drops_the_same_walls(void **state)
     free(w);
 }
 
+enum { VOLUMES_MOST = 20, VOLUME_PLANES = 4 };
+
+static void random_volumes(random_state *r, cull_volume *volumes, cull_plane (*planes)[VOLUME_PLANES])
+{
+    for (uint32_t v = 0; v < VOLUMES_MOST; v++) {
+        for (uint32_t k = 0; k < VOLUME_PLANES; k++) {
+            double n[3];
+            random_direction(r, n);
+            planes[v][k] = (cull_plane){{(float)n[0], (float)n[1], (float)n[2]}, (float)random_between(r, -20, 25)};
+        }
+        volumes[v] = (cull_volume){planes[v], VOLUME_PLANES, 0};
+    }
+}
+
+// With more volumes than one pass takes they are walked one after the other: the same set either way, and what the faces
+// and each volume alone would leave.
+static void volumes_and_faces_in_one_pass_leave_what_each_leaves_alone(void **state)
+{
+    (void)state;
+    const cull_plugin *frustum = plugin_frustum();
+    if (!frustum) {
+        fprintf(stderr, "SKIPPED: the frustum library is not built\n");
+        skip();
+    }
+    random_state r = {33};
+    static const char *const isas[] = {"plain", "avx2", "avx512"};
+    static const uint32_t counts[] = {1, 16, 17, 250, 256, 257, ITEMS}; // one block, two levels, three
+    static const uint32_t volume_counts[] = {0, 1, 2, 5, 16, 17, VOLUMES_MOST};
+    static cull_plane planes[VOLUMES_MOST][VOLUME_PLANES];
+    cull_volume volumes[VOLUMES_MOST];
+    const cull_volume everything = {NULL, 0, 0};
+    wall_zone *w = make_walls(&r, 0x1p-10);
+    uint64_t kept = 0, dropped = 0;
+    for (size_t c = 0; c < sizeof counts / sizeof *counts; c++)
+        for (int isa = 0; isa < 3; isa++) {
+            test_host h;
+            test_host_init(&h);
+            session s;
+            const char *values[2] = {"1", isas[isa]};
+            w->z.zone.item_count = counts[c];
+            if (session_open(&s, &h, frustum, &w->z.zone, values) != CULL_OK) continue;
+            for (int q = 0; q < 12; q++) {
+                static uint8_t faces[ITEMS], one[ITEMS], wanted[ITEMS], seen[ITEMS];
+                const cull_view view = {.eye = {(float)random_between(&r, -60, 60), (float)random_between(&r, -60, 60), (float)random_between(&r, -60, 60), 1}};
+                random_volumes(&r, volumes, planes);
+                session_select(&s, &view, &everything, 1);
+                assert_null(session_set(&s, faces));
+                for (size_t n = 0; n < sizeof volume_counts / sizeof *volume_counts; n++) {
+                    memset(wanted, 0, sizeof wanted);
+                    for (uint32_t v = 0; v < volume_counts[n]; v++) {
+                        session_select(&s, &view, &volumes[v], 1);
+                        assert_null(session_set(&s, one));
+                        for (uint32_t i = 0; i < counts[c]; i++) {
+                            const cull_box box = cull_box_at(&w->z.zone.boxes, i);
+                            assert_int_equal(one[i], faces[i] && cull_volume_touches(&volumes[v], box));
+                            wanted[i] |= one[i];
+                        }
+                    }
+                    session_select(&s, &view, volumes, volume_counts[n]);
+                    assert_null(session_set(&s, seen));
+                    assert_memory_equal(seen, wanted, counts[c]);
+                    for (uint32_t i = 0; i < counts[c]; i++) {
+                        kept += seen[i];
+                        dropped += !seen[i];
+                    }
+                }
+            }
+            session_close(&s);
+            assert_int_equal(h.live_blocks, 0);
+        }
+    assert_true(kept > 50000 && dropped > 50000);
+    test_zone_free(&w->z);
+    free(w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(only_walls_that_show_no_front_are_dropped),
         cmocka_unit_test(every_instruction_set_drops_the_same_walls),
+        cmocka_unit_test(volumes_and_faces_in_one_pass_leave_what_each_leaves_alone),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

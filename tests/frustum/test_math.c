@@ -142,6 +142,81 @@ static void a_clip_never_writes_more_than_it_has_room_for(void **state)
     for (size_t i = 0; i < 2 * sizeof out[0]; i++) assert_int_equal(((unsigned char *)&out[3])[i], 0x55);
 }
 
+// The loop as it stands in the paper: each edge's two heights anew.
+static uint32_t clip_plainly(const cull_point *in, uint32_t count, cull_cut cut, cull_point *out)
+{
+    uint32_t written = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const cull_point a = in[i], b = in[(i + 1) % count];
+        const double ha = cull_cut_height(cut, a), hb = cull_cut_height(cut, b);
+        if (ha >= 0) out[written++] = a;
+        if (ha > 0 && hb < 0) out[written++] = cull_cut_between(a, ha, b, hb);
+        if (ha < 0 && hb > 0) out[written++] = cull_cut_between(b, hb, a, ha);
+    }
+    return written;
+}
+
+static void a_clip_that_knows_heights_gives_the_points_of_one_that_does_not(void **state)
+{
+    (void)state;
+    enum { CORNERS = 9 };
+    random_state r = {7};
+    uint64_t cut_polygons = 0;
+    for (int k = 0; k < 50000; k++) {
+        cull_point p[CORNERS], plain[2 * CORNERS], carried[2 * CORNERS], known[2 * CORNERS];
+        double n[3], heights[CORNERS];
+        const uint32_t count = (uint32_t)random_between(&r, 0, CORNERS + 1);
+        for (uint32_t i = 0; i < count; i++) // bent loops too, and points on the plane
+            p[i] = (cull_point){rint(random_between(&r, -3, 3)), random_between(&r, -3, 3), rint(random_between(&r, -3, 3))};
+        random_direction(&r, n);
+        const cull_cut cut = k % 2 ? (cull_cut){n[0], n[1], n[2], random_between(&r, -2, 2)} : (cull_cut){1, 0, k % 4 ? 0 : 1, rint(random_between(&r, -2, 2))};
+        for (uint32_t i = 0; i < count; i++) heights[i] = cull_cut_height(cut, p[i]);
+        const uint32_t written = clip_plainly(p, count, cut, plain);
+        assert_int_equal(cull_polygon_clip(p, count, cut, carried, 2 * CORNERS), written);
+        assert_int_equal(cull_polygon_clip_at(p, heights, count, known, 2 * CORNERS), written);
+        assert_memory_equal(plain, carried, written * sizeof *plain);
+        assert_memory_equal(plain, known, written * sizeof *plain);
+        cut_polygons += written > 0 && (written != count || memcmp(plain, p, count * sizeof *p) != 0);
+    }
+    assert_true(cut_polygons > 10000);
+}
+
+static void the_next_float_is_the_librarys(void **state)
+{
+    (void)state;
+    random_state r = {8};
+    const float some[] = {0, -0.0f, 1, -1, FLT_MIN, -FLT_MIN, 1e-45f, -1e-45f, -FLT_MAX, 0.99999994f};
+    for (size_t i = 0; i < sizeof some / sizeof *some; i++) {
+        const float above = cull_float_above(some[i]), library = nextafterf(some[i], FLT_MAX);
+        assert_memory_equal(&above, &library, sizeof above);
+    }
+    for (int i = 0; i < 200000; i++) {
+        const float f = (float)(random_between(&r, -1, 1) * exp2(random_between(&r, -140, 120)));
+        assert_true(cull_float_above(f) == nextafterf(f, FLT_MAX));
+    }
+}
+
+// One function is the guard band: made at once, or in parts that serve many zones.
+static void a_plane_guarded_once_for_many_zones_has_the_bits_of_one_guarded_for_each(void **state)
+{
+    (void)state;
+    random_state r = {9};
+    for (int k = 0; k < 5000; k++) {
+        cull_guard g = {.pixel_tangent = random_between(&r, 1e-5, 1e-2), .reach = random_between(&r, 1, 20)};
+        double n[3];
+        random_direction(&r, n);
+        random_direction(&r, g.forward);
+        const double distance = k % 2 ? random_between(&r, 1, 1000) : 0;
+        const cull_guarded once = cull_guard_direction(&g, n, distance);
+        for (int zone = 0; zone < 3; zone++) {
+            for (int i = 0; i < 3; i++) g.eye[i] = random_between(&r, -500, 500);
+            g.radius = random_between(&r, 1, 1000);
+            const cull_plane here = cull_guarded_at(&once, g.eye, g.radius), whole = cull_guard_plane(&g, n, distance);
+            assert_memory_equal(&here, &whole, sizeof here);
+        }
+    }
+}
+
 static void a_point_on_the_border_of_a_volume_survives_every_order_of_its_sum(void **state)
 {
     (void)state;
@@ -200,6 +275,9 @@ int main(void)
         cmocka_unit_test(points_kept_by_a_clip_are_those_inside_and_on_the_border),
         cmocka_unit_test(two_polygons_that_share_an_edge_are_cut_at_the_same_point),
         cmocka_unit_test(a_clip_never_writes_more_than_it_has_room_for),
+        cmocka_unit_test(a_clip_that_knows_heights_gives_the_points_of_one_that_does_not),
+        cmocka_unit_test(the_next_float_is_the_librarys),
+        cmocka_unit_test(a_plane_guarded_once_for_many_zones_has_the_bits_of_one_guarded_for_each),
         cmocka_unit_test(a_point_on_the_border_of_a_volume_survives_every_order_of_its_sum),
         cmocka_unit_test(planes_are_the_same_bits_in_c_and_in_cxx),
     };

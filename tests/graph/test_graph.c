@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fixture.h"
 
+#include "host/core/zone_seam.h"
 #include "tests/common/failing_allocator.h"
 #include "tests/common/random.h"
 #include "tests/common/test.h"
@@ -221,6 +222,31 @@ static void points_and_boxes_find_what_trying_all_hulls_finds(void **state)
     assert_true(found_most > 20);
 }
 
+// Also of points exactly as far as that, and beyond the sharp edges of hulls, where bounds say nothing.
+static void a_zone_reaches_a_point_exactly_when_its_height_is_no_more(void **state)
+{
+    (void)state;
+    zone_fixture f;
+    graph *g = NULL;
+    uint64_t seed = 29, reached = 0, far = 0;
+    random_zones(&f, 23);
+    assert_int_equal(graph_open(&f.scene, allocator_heap(), &g), RESULT_OK);
+    for (int i = 0; i < 20000; i++) {
+        const uint32_t zone = random_below(&seed, f.scene.zone_count);
+        double p[3], distance = i % 3 ? random_between(&seed, -1, 2) : 0;
+        for (int k = 0; k < 3; k++) p[k] = random_between(&seed, -60, 60);
+        const double height = zone_height(&f.scene, zone, p);
+        if (i % 4 == 1 && isfinite(height)) distance = height;
+        if (i % 4 == 2 && isfinite(height)) distance = nextafter(height, -INFINITY);
+        assert_int_equal(graph_zone_reaches(g, zone, p, distance), height <= distance);
+        reached += height <= distance;
+        far += height > distance;
+    }
+    assert_true(reached > 4000 && far > 4000);
+    graph_close(g);
+    fixture_free(&f);
+}
+
 static void zones_told_in_another_order_are_found_the_same(void **state)
 {
     (void)state;
@@ -380,6 +406,7 @@ int main(void)
         cmocka_unit_test(a_zone_of_many_hulls_is_told_once_and_zones_ascend),
         cmocka_unit_test(room_for_fewer_zones_gives_the_least_and_tells_how_many_there_are),
         cmocka_unit_test(points_and_boxes_find_what_trying_all_hulls_finds),
+        cmocka_unit_test(a_zone_reaches_a_point_exactly_when_its_height_is_no_more),
         cmocka_unit_test(zones_told_in_another_order_are_found_the_same),
         cmocka_unit_test(rooms_ten_thousand_kilometres_out_are_found_as_at_the_origin),
         cmocka_unit_test(hulls_with_equal_centres_make_no_deeper_tree_than_others),

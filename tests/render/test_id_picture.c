@@ -163,6 +163,44 @@ static void owners_are_those_that_rays_find(void **state)
     assert_true(owned > sure / 2);
 }
 
+// At the height of the eye, lying.
+static quad quad_edge_on(double near_z, double far_z)
+{
+    quad q = quad_at(0, 0, 0, 0, 0);
+    const double corners[4][3] = {{-2, 0, near_z}, {2, 0, near_z}, {2, 0, far_z}, {-2, 0, far_z}};
+    memcpy(q.corners, corners, sizeof corners);
+    return q;
+}
+
+static int shows(const id_picture *p, size_t pixel, uint32_t triangles)
+{
+    return p->triangles[pixel] - 1 < triangles;
+}
+
+// A step whose top lies in the eye's plane: the raster rounds it to a sliver, whose depth runs away from the plane that it has.
+static void a_wall_seen_edge_on_keeps_within_its_corners_depths(void **state)
+{
+    enum { VIEWS = 12, WIDE = 1280, TALL = 720, STEP = 6 }; // STEP: triangles
+    bed *b = *state;
+    const quad quads[] = {
+        quad_at(-3, -2, -2, 2, 0), quad_edge_on(-3, -5), quad_at(-5, -2, 0, 2, 2), // a riser, the step, the next riser above
+        quad_at(-6, -20, -20, 20, 20),                                             // nearer than where the sliver's plane gets to
+    };
+    uint32_t seed = 5;
+    bed_scene(b, quads, sizeof quads / sizeof *quads, NULL);
+    for (int i = 0; i < VIEWS; ++i) {
+        camera c = camera_at(random_unit(&seed) - 0.5, 0, random_unit(&seed) - 0.5);
+        for (int k = 0; k < 3; ++k) c.forward[k] += random_unit(&seed) - 0.5;
+        c.up[0] += 4 * (random_unit(&seed) - 0.5);
+        c.fovy_deg = 20;
+        c.aspect = (double)WIDE / TALL;
+        id_picture p = bed_ids(b, &(id_request){.camera = &c}, WIDE, TALL);
+        for (size_t k = WIDE; k < (size_t)WIDE * (TALL - 1); ++k) // no pixel of what is behind amid the step's
+            if (!shows(&p, k, STEP)) assert_false(shows(&p, k - 1, STEP) && shows(&p, k + 1, STEP) && shows(&p, k - WIDE, STEP) && shows(&p, k + WIDE, STEP));
+        drop(&p);
+    }
+}
+
 static void the_visible_items_drawn_alone_give_the_same_picture(void **state)
 {
     bed *b = *state;
@@ -418,6 +456,7 @@ int main(void)
         T(equal_depth_goes_to_the_lower_id),
         T(a_mover_comes_last_and_keeps_its_own_triangles),
         T(owners_are_those_that_rays_find),
+        T(a_wall_seen_edge_on_keeps_within_its_corners_depths),
         T(the_visible_items_drawn_alone_give_the_same_picture),
         T(an_item_left_out_shows_what_is_behind),
         T(a_translucent_quad_hides_nothing_and_is_reported_only_where_it_is_seen),

@@ -51,10 +51,10 @@ vec3 from_eye_of(vec3 p)
 #ifdef FAR_DEPTH
 layout(location = 5) in vec3 other_a; // the triangle's other corners, where this vertex is its last
 layout(location = 6) in vec3 other_b;
-flat out float v_far_depth; // of its farthest corner
+flat out float v_far_depth, v_near_depth; // of its farthest and nearest corner
 float depth_of(vec4 clip)
 {
-    return clip.w > 0.0 ? clip.z / clip.w : 1.0; // behind the eye: not the farthest
+    return clip.w > 0.0 ? clip.z / clip.w : 1.0; // behind the eye: the near plane cuts it
 }
 vec4 clip_of(vec3 p)
 {
@@ -74,7 +74,9 @@ void main()
 #endif
     v_triangle = triangle;
 #ifdef FAR_DEPTH
-    v_far_depth = min(depth_of(gl_Position), min(depth_of(clip_of(other_a)), depth_of(clip_of(other_b))));
+    float depth = depth_of(gl_Position), depth_a = depth_of(clip_of(other_a)), depth_b = depth_of(clip_of(other_b));
+    v_far_depth = min(depth, min(depth_a, depth_b));
+    v_near_depth = max(depth, max(depth_a, depth_b));
 #endif
 #ifdef CUT_OUT
     v_texcoord = texcoord;
