@@ -140,7 +140,7 @@ cull_result shapes_build(const cull_host *host, const cull_zone *zone, const uin
     }
     memset(out->units, 0, unit_bytes(out));
     for (uint32_t place = 0; place < zone->item_count; place++) {
-        face_fill(zone, order[place], &out->faces[place]);
+        out->faces[place] = cull_face_of(zone, order[place]);
         fill_shape(zone, order[place], (bsp_shape *)(void *)(out->units + (size_t)out->firsts[place] * SHAPE_UNIT));
     }
     return CULL_OK;

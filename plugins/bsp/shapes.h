@@ -6,10 +6,7 @@
 #ifndef PORTCULLIS_BSP_SHAPES_H
 #define PORTCULLIS_BSP_SHAPES_H
 
-#include <portcullis/culler.h>
-
-// Back seen alone: normal . eye + (offset * eye.w + doubt * |eye|) < 0; zeros: never.
-typedef struct bsp_face { float normal[3], offset, doubt; } bsp_face;
+#include <portcullis/face.h>
 
 typedef struct bsp_lane { float x[4], y[4], z[4]; } bsp_lane; // four vertices
 typedef enum shape_kind {
@@ -28,7 +25,7 @@ enum { SHAPE_UNIT = 64 };
 typedef struct bsp_shapes {
     char *units;      // readable for one more
     uint32_t *firsts; // by place: the unit that its shape starts at
-    bsp_face *faces;  // by place
+    cull_face *faces;  // by place
     uint32_t item_count, unit_count, most_vertices;
     uint32_t bent_count; // walls judged by their triangles
 } bsp_shapes;
@@ -37,9 +34,6 @@ typedef struct bsp_shapes {
 cull_result shapes_build(const cull_host *host, const cull_zone *zone, const uint32_t *order, bsp_shapes *out);
 void shapes_free(const cull_host *host, bsp_shapes *shapes);
 size_t shapes_bytes(const bsp_shapes *shapes);
-
-// For shapes_build (faces.c): the face of item `item` of the zone; zeros where its back counts too.
-void face_fill(const cull_zone *zone, uint32_t item, bsp_face *out);
 
 static inline const bsp_shape *shape_of_unit(const bsp_shapes *s, uint32_t unit)
 {
@@ -57,7 +51,7 @@ static inline float eye_reach(const float eye[4])
     return most;
 }
 
-static inline int shows_its_back(const bsp_face *f, const float eye[4], float reach)
+static inline int shows_its_back(const cull_face *f, const float eye[4], float reach)
 {
     const float height = (f->normal[0] * eye[0] + f->normal[1] * eye[1]) + f->normal[2] * eye[2];
     return height + (f->offset * eye[3] + f->doubt * reach) < 0;

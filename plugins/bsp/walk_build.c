@@ -219,7 +219,7 @@ static void fill_lane(const builder *b, const bsp_shapes *shapes, uint32_t place
 {
     const cull_box box = cull_box_at(&b->zone->boxes, b->tree->order[place]);
     const float min[3] = {box.min.x, box.min.y, box.min.z}, max[3] = {box.max.x, box.max.y, box.max.z};
-    const bsp_face *face = &shapes->faces[place];
+    const cull_face *face = &shapes->faces[place];
     for (int axis = 0; axis < 3; axis++) {
         out->min[axis][lane] = min[axis];
         out->max[axis][lane] = max[axis];

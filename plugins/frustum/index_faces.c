@@ -1,69 +1,18 @@
-// The faces of walls, for backface=1: from where a wall certainly shows only its back.
+// The faces of walls, for backface=1, as the walk's blocks have them: see api/portcullis/face.h.
 // SPDX-License-Identifier: MIT
-// Invariant: a wall is dropped only where normal . eye + offset + doubt * |eye| < 0, and then the eye is behind every
-// triangle that is drawn for it, as its rounded vertices have it.
+// Invariant: five rows a block; an item whose back counts too, or no item, has zeros: never dropped.
 #include "index.h"
 
-#include <math.h>
-
-// Of each term of the test: at most six roundings in float and one of the eye itself, at 2^-24 each.
-static const double FACE_ROUNDING = 8.0 / 16777216;
-
-typedef struct face { double normal[3], offset; } face;
-
-// 0 for a triangle of no area: it leaves no pixel.
-static int triangle_face(const cull_zone *zone, const uint32_t *corners, face *out)
-{
-    const cull_vec3 a = zone->positions[corners[0]], b = zone->positions[corners[1]], c = zone->positions[corners[2]];
-    const double u[3] = {(double)b.x - (double)a.x, (double)b.y - (double)a.y, (double)b.z - (double)a.z};
-    const double v[3] = {(double)c.x - (double)a.x, (double)c.y - (double)a.y, (double)c.z - (double)a.z};
-    const double n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-    const double length = sqrt((n[0] * n[0] + n[1] * n[1]) + n[2] * n[2]);
-    if (!(length > 0)) return 0;
-    for (int i = 0; i < 3; i++) out->normal[i] = n[i] / length;
-    out->offset = -((out->normal[0] * (double)a.x + out->normal[1] * (double)a.y) + out->normal[2] * (double)a.z);
-    return 1;
-}
-
-// How far the wall's triangles lie off its plane: rounding bends them, slivers most. doubt is per metre of the eye's
-// largest coordinate, offset an absolute distance.
-static void wall_doubt(const cull_zone *zone, const cull_item *item, const cull_plane *plane, double *out_offset, double *out_doubt)
-{
-    const double n[3] = {(double)plane->normal.x, (double)plane->normal.y, (double)plane->normal.z};
-    double offset = 0, doubt = 0;
-    for (uint32_t i = 0; i + 3 <= item->index_count; i += 3) {
-        face f;
-        if (!triangle_face(zone, zone->indices + item->first_index + i, &f)) continue;
-        doubt = fmax(doubt, (fabs(f.normal[0] - n[0]) + fabs(f.normal[1] - n[1])) + fabs(f.normal[2] - n[2]));
-        offset = fmax(offset, fabs(f.offset - (double)plane->offset));
-    }
-    *out_offset = offset * (1 + FACE_ROUNDING) + FACE_ROUNDING * fabs((double)plane->offset);
-    *out_doubt = doubt * (1 + FACE_ROUNDING) + FACE_ROUNDING * ((fabs(n[0]) + fabs(n[1])) + fabs(n[2]));
-}
-
-static float float_up(double value)
-{
-    const float rounded = (float)value;
-    return (double)rounded < value ? nextafterf(rounded, INFINITY) : rounded;
-}
+#include <portcullis/face.h>
 
 void index_faces_fill(const cull_zone *zone, const uint32_t *order, uint32_t count, float *faces)
 {
     for (uint32_t i = 0; i < INDEX_WIDTH; i++) {
+        cull_face face = {{0, 0, 0}, 0, 0};
+        if (i < count) face = cull_face_of(zone, order[i]);
         float *out = faces + i;
-        for (int row = 0; row < 5; row++) out[row * INDEX_WIDTH] = 0; // 0 >= 0: never dropped
-        if (i >= count) continue;
-        const cull_item *item = &zone->items[order[i]];
-        if (!(item->flags & CULL_ITEM_WALL) || (item->flags & CULL_ITEM_TWO_SIDED)) continue;
-        const cull_wall *wall = &zone->walls[order[i]];
-        if (wall->vertex_count == 0) continue;
-        const cull_plane *plane = &zone->planes[wall->plane];
-        double offset, doubt;
-        wall_doubt(zone, item, plane, &offset, &doubt);
-        out[0] = plane->normal.x;
-        out[INDEX_WIDTH] = plane->normal.y;
-        out[2 * INDEX_WIDTH] = plane->normal.z;
-        out[3 * INDEX_WIDTH] = float_up((double)plane->offset + offset);
-        out[4 * INDEX_WIDTH] = float_up(doubt);
+        for (int row = 0; row < 3; row++) out[row * INDEX_WIDTH] = face.normal[row];
+        out[3 * INDEX_WIDTH] = face.offset;
+        out[4 * INDEX_WIDTH] = face.doubt;
     }
 }
