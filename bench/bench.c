@@ -86,7 +86,7 @@ static result find_truth(run *b, uint32_t k)
 {
     const strategy *s = &b->strategies[k];
     truth *t = truth_of(b, k);
-    const truth_request request = {b->q->scene, b->q->width_px, b->q->height_px, s->walls};
+    const truth_request request = {b->q->scene, b->q->width_px * b->q->samples, b->q->height_px * b->q->samples, s->walls};
     result done = truth_open(&request, b->q->services->memory, b->r, t);
     for (uint32_t v = 0; v < b->q->path->count && done == RESULT_OK; ++v) {
         progress_tell(&b->bar, "truth");

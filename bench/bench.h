@@ -29,11 +29,13 @@ typedef struct bench_request {
     loader *plugins;
     const host_services *services;
     uint32_t strategy_count, width_px, height_px, repeat, query_latency;
+    uint32_t samples; // the truth is a picture this many times as wide and high; 1 to BENCH_SAMPLES_MOST. images only with 1
     bench_truth truth;
     bench_ids ids;
     const char *images; // folder for pictures, NULL: none
 } bench_request;
 
+enum { BENCH_SAMPLES_MOST = 8 };
 enum { BENCH_HARD_POLYGONS = 40 }; // visible in a view: from there on it is a hard one, beside walls that fill the picture
 
 // One strategy's counters: as the JSON names them. Means are per view, sums over the path.

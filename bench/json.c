@@ -49,7 +49,7 @@ static json_t *context_of(const bench_result *b, const bench_request *q, const b
     gethostname(host, sizeof host - 1);
     cpu_model(model, sizeof model);
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)q->scene->hash);
-    return json_pack("{s:s, s:o, s:i, s:o, s:o, s:s, s:s, s:s, s:o, s:o, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:o, s:i}", "date", date, "host_name",
+    return json_pack("{s:s, s:o, s:i, s:o, s:o, s:s, s:s, s:s, s:o, s:o, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:o, s:i}", "date", date, "host_name",
                      json_text(host), "num_cpus", (int)sysconf(_SC_NPROCESSORS_ONLN), "cpu_model", json_text(model), "load_avg", load_average(),
                      "library_version", PORTCULLIS_VERSION, "library_build_type",
 #ifdef NDEBUG
@@ -58,9 +58,9 @@ static json_t *context_of(const bench_result *b, const bench_request *q, const b
                      "debug",
 #endif
                      "commit", PORTCULLIS_COMMIT, "gl_renderer", json_text(b->gl_used ? b->gl_name : "none"), "scene", json_text(labels->scene),
-                     "scene_hash", hash, "width_px", (int)q->width_px, "height_px", (int)q->height_px, "repeat", (int)q->repeat, "query_latency",
-                     (int)q->query_latency, "zones", (int)b->zones, "portals", (int)b->portals, "path", json_text(labels->path),
-                     "json_schema_version", 1);
+                     "scene_hash", hash, "width_px", (int)q->width_px, "height_px", (int)q->height_px, "samples", (int)q->samples,
+                     "repeat", (int)q->repeat, "query_latency", (int)q->query_latency, "zones", (int)b->zones, "portals", (int)b->portals,
+                     "path", json_text(labels->path), "json_schema_version", 1);
 }
 
 typedef struct counter { const char *name; double value; } counter;

@@ -139,7 +139,9 @@ typedef struct cull_view {
 
 // A convex set: no planes is everything. Never holds the near plane. The host has moved the planes outward (guard band
 // and rounding, see plane.h): plain float arithmetic on them, in any order, fused or not, loses nothing.
-typedef struct cull_volume { const cull_plane *planes; uint32_t plane_count, reserved; } cull_volume;
+// entry: 1 + the place in cull_zone.portals of the one portal that all its lines come into the zone through; 0: not known, or it starts
+// here.
+typedef struct cull_volume { const cull_plane *planes; uint32_t plane_count, entry; } cull_volume;
 
 // A mover inside one of the volumes. The id stays while the mover stays in the zone and may then name another mover:
 // good enough for a guess about this frame, never for an answer.

@@ -80,7 +80,7 @@ int parse_size(const char *text, app_size *out)
     if (!cross || cross == text || (size_t)(cross - text) >= sizeof number[0] || strlen(cross + 1) >= sizeof number[1]) return 0;
     snprintf(number[0], sizeof number[0], "%.*s", (int)(cross - text), text);
     snprintf(number[1], sizeof number[1], "%s", cross + 1);
-    return parse_count(number[0], 1, 8192, &out->width_px) && parse_count(number[1], 1, 8192, &out->height_px);
+    return parse_count(number[0], 1, APP_SIDE_MOST, &out->width_px) && parse_count(number[1], 1, APP_SIDE_MOST, &out->height_px);
 }
 
 int parse_doors(const char *text, door_state *out)

@@ -44,6 +44,7 @@ void app_close(app *a);
 int app_exit_code(result done);
 result app_check_gl(app *a, const renderer *g); // RESULT_NO_GL with a line where the driver made errors; g may be NULL
 
+enum { APP_SIDE_MOST = 8192 }; // pixels of a picture, or samples
 typedef struct app_size { uint32_t width_px, height_px; } app_size;
 int parse_size(const char *text, app_size *out);                                     // "1280x720"; 0 when it is none
 int parse_count(const char *text, uint32_t least, uint32_t most, uint32_t *out);     // 0 when it is none

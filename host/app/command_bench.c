@@ -25,6 +25,7 @@ enum {
     KEY_DOORS,
     KEY_IMAGES,
     KEY_LATENCY,
+    KEY_SAMPLES,
     KEY_JSON,
     KEY_NO_MOVERS,
     KEY_PLUGIN
@@ -36,7 +37,7 @@ typedef struct arguments {
     const char *scene, *views, *images, *json;
     const char *cullers[STRATEGIES_MOST];
     zone_options zones;
-    uint32_t culler_count, swap, repeat, latency;
+    uint32_t culler_count, swap, repeat, latency, samples;
     app_size size;
     doors_choice doors;
     bench_truth truth;
@@ -57,6 +58,7 @@ static const struct argp_option options[] = {
      0},
     {"size", KEY_SIZE, "WxH", 0, "of the picture (default 1280x720)", 0},
     {"repeat", KEY_REPEAT, "N", 0, "passes over the path (default 3)", 0},
+    {"samples", KEY_SAMPLES, "N", 0, "each pixel is judged at N x N places, 1 to 8 (default 1): what is seen, and what is missed in samples", 0},
     {"no-truth", KEY_NO_TRUTH, NULL, 0, "time only: no pictures, no GL unless a culler tests", 0},
     {"ids", KEY_IDS, NULL, 0, "writing the id of every drawn item counts as culling", 0},
     {"doors", KEY_DOORS, "open|shut|scene", 0, "how doors stand (default open; scene: as its file says)", 0},
@@ -74,6 +76,7 @@ static void parse_numbers(int key, const char *text, struct argp_state *state)
     if (key == KEY_SIZE && !parse_size(text, &a->size)) argp_error(state, "--size takes WxH of 1 to 8192, not '%s'", text);
     if (key == KEY_REPEAT && !parse_count(text, 1, 10000, &a->repeat)) argp_error(state, "--repeat takes 1 to 10000, not '%s'", text);
     if (key == KEY_LATENCY && !parse_count(text, 0, 64, &a->latency)) argp_error(state, "--query-latency takes 0 to 64, not '%s'", text);
+    if (key == KEY_SAMPLES && !parse_count(text, 1, BENCH_SAMPLES_MOST, &a->samples)) argp_error(state, "--samples takes 1 to 8, not '%s'", text);
     if (key == KEY_SWAP && !parse_count(text, 1, SWAP_VIEWS_MOST, &a->swap)) argp_error(state, "--swap takes 1 to 1000000 views, not '%s'", text);
     if (key == KEY_DOORS && !app_doors_parse(text, &a->doors)) argp_error(state, "--doors takes open, shut or scene, not '%s'", text);
 }
@@ -100,6 +103,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_SIZE:
     case KEY_REPEAT:
     case KEY_LATENCY:
+    case KEY_SAMPLES:
     case KEY_SWAP:
     case KEY_DOORS: parse_numbers(key, text, state); break;
     case ARGP_KEY_ARG:
@@ -108,6 +112,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
         break;
     case ARGP_KEY_END:
         if (!a->scene) argp_error(state, "SCENE is missing");
+        if (a->images && a->samples > 1) argp_error(state, "--images shows pixels: leave --samples out");
+        if (a->size.width_px * a->samples > APP_SIDE_MOST || a->size.height_px * a->samples > APP_SIDE_MOST)
+            argp_error(state, "--size times --samples is over %d: a picture of %d x %d samples is the largest", APP_SIDE_MOST, APP_SIDE_MOST, APP_SIDE_MOST);
         if (!a->views) argp_error(state, "--views is missing; name a .views file, auto:N, auto:walk:N, auto:edges:N or path:NAME");
         if (a->swap && a->culler_count < 2) argp_error(state, "--swap needs two or more --culler to go through");
         if (a->swap && a->culler_count == STRATEGIES_MOST) argp_error(state, "too many of one option");
@@ -191,7 +198,7 @@ static result run_bench(app *a, const arguments *q, const camera_path *path, uin
     const bench_request bench = {.scene = a->scene, .path = path, .strategies = strategies, .doors = app_doors_of(&q->doors),
                                  .plugins = a->plugins, .services = &a->services,
                                  .strategy_count = count, .width_px = q->size.width_px, .height_px = q->size.height_px, .repeat = q->repeat,
-                                 .query_latency = q->latency, .truth = q->truth, .ids = q->ids, .images = q->images};
+                                 .query_latency = q->latency, .samples = q->samples, .truth = q->truth, .ids = q->ids, .images = q->images};
     const bench_labels labels = {scene_label(q->scene, &a->texts), path->name};
     if (!labels.scene) return report_no_memory(&a->report, NULL);
     bench_result results;
@@ -216,7 +223,7 @@ int command_bench(int argc, char **argv)
 {
     static const struct argp parser = {options, parse, "SCENE", "Measures strategies on a scene and camera path against the truth.",
                                        NULL,    NULL,  NULL};
-    arguments q = {.repeat = 3, .size = {1280, 720}, .truth = BENCH_TRUTH, .ids = BENCH_RUNS};
+    arguments q = {.repeat = 3, .samples = 1, .size = {1280, 720}, .truth = BENCH_TRUTH, .ids = BENCH_RUNS};
     if (argp_parse(&parser, argc, argv, 0, NULL, &q) != 0) return EXIT_USAGE;
     app a;
     camera_path path = {0};

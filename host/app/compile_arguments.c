@@ -16,8 +16,8 @@
 static const struct argp_option options[] = {
     {"output", 'o', "FILE.pcs", 0, "where to; needed", 0},
     {"portals", 'p', "none|authored|doors|auto", 0, "what parts zones: nothing, zone_portal brushes, doors as well, narrow places as well (default doors)", 0},
-    {"rooms", 'n', "N", 0, "with auto: no more rooms than these, instead of by how open they are", 0},
-    {"max-portals", 'm', "N", 0, "with auto: no more portals between rooms than these (default 100)", 0},
+    {"rooms", 'n', "N", 0, "with auto: no more rooms than these, but for what doors part", 0},
+    {"max-portals", 'm', "N", 0, "with auto: no more portals than these in all (default 100)", 0},
     {"grid", 'g', "G", 0, "grid steps a unit, a whole number (default 256)", 0},
     {"prt", 'r', "FILE", 0, "the portals too, as map editors read them", 0},
     {"pts", 't', "FILE", 0, "the leak's line too, as map editors read it; without a leak an old one is removed", 0},

@@ -147,12 +147,11 @@ void compile_mesh_free(compile_mesh *m); // NULL is fine
 typedef enum portal_choice { PORTALS_DOORS, PORTALS_NONE, PORTALS_AUTHORED, PORTALS_AUTO } portal_choice; // AUTO: doors, and rooms made
 // When automatic rooms are apart enough.
 typedef struct room_limits {
-    double openness;  // rooms less open to each other than this stay apart; see rooms_merge.c
-    uint32_t rooms;   // instead: no more than these; 0: openness decides
-    uint32_t portals; // no more than these between rooms, as they stand in the scene: coplanar neighbours joined
+    uint32_t rooms;   // no more than these, but for what doors part; 0: what portals are worth decides, see rooms_merge.c
+    uint32_t portals; // no more than these in all, as they stand in the scene: of rooms, of doors, and authored ones, which always stay
 } room_limits;
 typedef struct zone_options { portal_choice portals; room_limits rooms; } zone_options; // rooms: of PORTALS_AUTO
-zone_options zone_options_of(portal_choice choice); // openness 1.1, 100 portals
+zone_options zone_options_of(portal_choice choice); // 100 portals
 
 typedef struct compiled_portal {
     plane_ref plane;                     // front: zones[0]

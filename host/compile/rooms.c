@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "rooms.h"
 
+#include "rooms_doors.h"
 #include "steady.h"
 
 #include <math.h>
@@ -17,6 +18,7 @@ typedef struct room_build {
     buffer walls, edges; // cell_wall, polygon_edge
     cell_set cells;
     room_map rooms;
+    door_set doors;
     portal_set *set;
 } room_build;
 
@@ -144,18 +146,67 @@ static result piece_add(room_build *b, const cell_face *f)
     return r;
 }
 
+static int is_inside(const room_build *b, const cell_face *f)
+{
+    return b->rooms.room_of[f->cells[0]] == b->rooms.room_of[f->cells[1]];
+}
+
+static uint32_t group_of(const room_build *b, const cell_face *f)
+{
+    return ((const cell_door *)b->doors.doors.items)[f->door].group;
+}
+
+// A door inside of a room goes, with its group: what of it still parts rooms becomes a portal like any other.
+static void doors_give_up(room_build *b, uint8_t *is_given_up)
+{
+    const cell_face *f = b->cells.faces.items;
+    portal_piece *pieces = b->set->pieces.items;
+    for (size_t i = 0; i < b->cells.faces.count; ++i)
+        if (f[i].door != CELL_NO_DOOR && is_inside(b, &f[i])) is_given_up[group_of(b, &f[i])] = 1;
+    for (uint32_t i = 0; i < b->doors.piece_count; ++i)
+        if (is_given_up[b->doors.group_of[i]]) pieces[i].is_rejected = 1;
+}
+
 static result pieces_add(room_build *b)
 {
     const cell_face *f = b->cells.faces.items;
+    uint8_t *is_given_up = memory_alloc_zeroed(b->memory, b->doors.piece_count + 1, 1);
+    if (!is_given_up) return RESULT_NO_MEMORY;
+    doors_give_up(b, is_given_up);
     result r = RESULT_OK;
     for (size_t i = 0; i < b->cells.faces.count && r == RESULT_OK; ++i) {
-        if (b->rooms.room_of[f[i].cells[0]] == b->rooms.room_of[f[i].cells[1]]) continue;
+        if (is_inside(b, &f[i]) || (f[i].door != CELL_NO_DOOR && !is_given_up[group_of(b, &f[i])])) continue;
         r = piece_add(b, &f[i]);
     }
+    memory_free(b->memory, is_given_up, b->doors.piece_count + 1, 1);
     return r;
 }
 
-result rooms_portals(const compile_input *in, const zone_trace *t, const room_limits *limits, portal_set *set)
+static result rooms_take(room_build *b, const room_limits *limits)
+{
+    const cell_input from = {.planes = b->in->planes,
+                             .walls = b->walls.items,
+                             .edges = b->edges.items,
+                             .doors = b->doors.doors.items,
+                             .wall_count = (uint32_t)b->walls.count,
+                             .edge_count = (uint32_t)b->edges.count,
+                             .door_count = (uint32_t)b->doors.doors.count};
+    result r = cell_set_make(&from, b->memory, &b->cells);
+    const merge_input merge = {.cells = &b->cells,
+                               .from = &from,
+                               .door_portals = b->doors.portals,
+                               .fixed_portals = b->doors.fixed,
+                               .limits = limits,
+                               .door_places = b->doors.places.items,
+                               .door_place_count = (uint32_t)b->doors.places.count};
+    if (r == RESULT_OK) r = rooms_merge(&merge, b->memory, &b->rooms);
+    if (r == RESULT_OK) r = pieces_add(b);
+    room_map_free(&b->rooms, b->memory);
+    cell_set_free(&b->cells);
+    return r;
+}
+
+result rooms_portals(const compile_input *in, const zone_trace *t, const room_limits *limits, report *reports, portal_set *set)
 {
     const allocator *memory = set->s.memory;
     room_build b = {.in = in,
@@ -166,14 +217,12 @@ result rooms_portals(const compile_input *in, const zone_trace *t, const room_li
                     .set = set};
     result r = walls_take(&b);
     if (r == RESULT_OK) r = walls_order(&b);
-    if (r == RESULT_OK) {
-        const cell_input from = {in->planes, b.walls.items, b.edges.items, (uint32_t)b.walls.count, (uint32_t)b.edges.count};
-        r = cell_set_make(&from, memory, &b.cells);
-        if (r == RESULT_OK) r = rooms_merge(&b.cells, in->planes, limits, memory, &b.rooms);
-        if (r == RESULT_OK) r = pieces_add(&b);
-        room_map_free(&b.rooms, memory);
-        cell_set_free(&b.cells);
-    }
+    if (r == RESULT_OK) r = door_set_make(in, t, set, reports, memory, &b.doors);
+    if (r == RESULT_OK) r = rooms_take(&b, limits);
+    if (r == RESULT_OK && b.doors.fixed > limits->portals)
+        report_warning(reports, in->path, 0, "portal brushes make %u portals, more than the %u that were asked for: they stay, and nothing else parts rooms; ask for more or take some out",
+                       b.doors.fixed, limits->portals);
+    if (b.doors.memory) door_set_free(&b.doors);
     buffer_free(&b.walls);
     buffer_free(&b.edges);
     return r;

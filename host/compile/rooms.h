@@ -8,6 +8,6 @@
 #include "zone_trace.h"
 
 // Adds pieces to the set. t: traced with the pieces that the set has.
-result rooms_portals(const compile_input *in, const zone_trace *t, const room_limits *limits, portal_set *set);
+result rooms_portals(const compile_input *in, const zone_trace *t, const room_limits *limits, report *reports, portal_set *set);
 
 #endif

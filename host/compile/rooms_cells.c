@@ -3,6 +3,7 @@
 // Invariant: a node without walls is one kind of matter: what its last splitter has on that side.
 #include "rooms_partition.h"
 
+#include <math.h>
 #include <string.h>
 
 enum {
@@ -140,6 +141,27 @@ static result build_all(build *b)
     return r;
 }
 
+void partition_plane(const partition *p, plane_ref plane, double out[4])
+{
+    const cull_wide_plane wide = plane_table_get(p->planes, plane);
+    double square = 0;
+    for (int k = 0; k < 3; ++k) square += (double)wide.normal[k] * (double)wide.normal[k];
+    for (int k = 0; k < 3; ++k) out[k] = (double)wide.normal[k] / sqrt(square);
+    out[3] = cull_wide_to_double(wide.offset) / sqrt(square);
+}
+
+static result tree_keep(const partition *p)
+{
+    cell_node *to = buffer_push(&p->out->tree, p->nodes.count);
+    if (!to) return RESULT_NO_MEMORY;
+    for (uint32_t i = 0; i < p->nodes.count; ++i) {
+        const part_node *n = partition_node(p, i);
+        partition_plane(p, n->plane, to[i].plane);
+        for (int k = 0; k < 2; ++k) to[i].child[k] = n->child[k];
+    }
+    return RESULT_OK;
+}
+
 static result walls_take(build *b, const cell_input *from)
 {
     const build_task root = {0, from->wall_count, PART_NONE, 0, 0};
@@ -181,7 +203,11 @@ result partition_cut(partition *p, const plane_polygon *shape, plane_ref by, pla
 
 result cell_set_make(const cell_input *from, const allocator *memory, cell_set *out)
 {
-    *out = (cell_set){.cells = buffer_make(memory, sizeof(cell)), .faces = buffer_make(memory, sizeof(cell_face)), .edges = buffer_make(memory, sizeof(polygon_edge))};
+    *out = (cell_set){.cells = buffer_make(memory, sizeof(cell)),
+                      .faces = buffer_make(memory, sizeof(cell_face)),
+                      .patches = buffer_make(memory, sizeof(cell_patch)),
+                      .tree = buffer_make(memory, sizeof(cell_node)),
+                      .edges = buffer_make(memory, sizeof(polygon_edge))};
     partition p = {.planes = from->planes,
                    .out = out,
                    .nodes = buffer_make(memory, sizeof(part_node)),
@@ -189,6 +215,7 @@ result cell_set_make(const cell_input *from, const allocator *memory, cell_set *
                    .signs = buffer_make(memory, sizeof(int8_t))};
     result r = partition_build(&p, from, memory);
     if (r == RESULT_OK) r = partition_faces(&p, from, memory);
+    if (r == RESULT_OK && p.nodes.count) r = tree_keep(&p);
     out->edges = p.edges;
     buffer_free(&p.nodes);
     buffer_free(&p.signs);
@@ -199,5 +226,7 @@ void cell_set_free(cell_set *c)
 {
     buffer_free(&c->cells);
     buffer_free(&c->faces);
+    buffer_free(&c->patches);
+    buffer_free(&c->tree);
     buffer_free(&c->edges);
 }

@@ -11,6 +11,7 @@ typedef struct sunk { plane_polygon shape; uint32_t at; } sunk; // at: a node, o
 
 typedef struct facing {
     partition *p;
+    const cell_input *from;
     plane_ref cube[6];
     double origin[3];  // near the cells: cones from there keep volumes precise
     buffer stack;      // sunk
@@ -85,6 +86,14 @@ static cell *cell_at(const facing *f, uint32_t leaf)
     return leaf == PART_SOLID ? NULL : (cell *)f->p->out->cells.items + (leaf & ~PART_LEAF);
 }
 
+static uint32_t door_at(const cell_input *from, uint32_t plane, uint32_t region, uint32_t other)
+{
+    const uint32_t low = region < other ? region : other, high = region < other ? other : region;
+    for (uint32_t i = 0; i < from->door_count; ++i)
+        if (from->doors[i].plane == plane && from->doors[i].regions[0] == low && from->doors[i].regions[1] == high) return i;
+    return CELL_NO_DOOR;
+}
+
 static result face_add(facing *f, const plane_polygon *shape, uint32_t front, uint32_t behind)
 {
     cell *a = cell_at(f, front), *b = cell_at(f, behind);
@@ -101,8 +110,10 @@ static result face_add(facing *f, const plane_polygon *shape, uint32_t front, ui
     const double cone = area * (height / sqrt(square)) / 3;
     if (a) a->volume -= cone;
     if (b) b->volume += cone;
-    if (!a || !b || a->region != b->region || a == b) return RESULT_OK;
-    const cell_face made = {*shape, {front & ~PART_LEAF, behind & ~PART_LEAF}, area};
+    if (!a || !b || a == b) return RESULT_OK;
+    const uint32_t door = a->region == b->region ? CELL_NO_DOOR : door_at(f->from, shape->plane >> 1, a->region, b->region);
+    if (a->region != b->region && door == CELL_NO_DOOR) return RESULT_OK;
+    const cell_face made = {*shape, {front & ~PART_LEAF, behind & ~PART_LEAF}, door, area};
     return buffer_append(&f->p->out->faces, &made, 1) ? RESULT_OK : RESULT_NO_MEMORY;
 }
 
@@ -132,15 +143,21 @@ static result walls_count(facing *f, const cell_input *from)
 {
     result r = RESULT_OK;
     for (uint32_t i = 0; i < from->wall_count && r == RESULT_OK; ++i) {
-        const size_t edges = f->p->edges.count;
+        const size_t edges = f->p->edges.count, kept = f->p->out->patches.count;
         if (from->walls[i].behind != CELL_SOLID) continue; // a portal is no wall
         f->arrived[0].count = 0;
         r = sink(f, from->walls[i].shape, 0, &f->arrived[0]); // the input's edges stand first in p->edges
         for (size_t k = 0; k < f->arrived[0].count && r == RESULT_OK; ++k) {
-            cell *c = cell_at(f, ((sunk *)f->arrived[0].items)[k].at);
-            if (c) c->walls++;
+            const sunk *s = (sunk *)f->arrived[0].items + k;
+            cell *c = cell_at(f, s->at);
+            if (!c) continue;
+            c->walls++;
+            cell_patch made = {.shape = s->shape, .cell = s->at & ~PART_LEAF, .wall = i};
+            made.area = polygon_area((polygon_edge *)f->p->edges.items + s->shape.first, s->shape.count);
+            partition_plane(f->p, s->shape.plane, made.plane);
+            if (!buffer_append(&f->p->out->patches, &made, 1)) r = RESULT_NO_MEMORY;
         }
-        f->p->edges.count = edges;
+        if (f->p->out->patches.count == kept) f->p->edges.count = edges;
     }
     return r;
 }
@@ -148,7 +165,7 @@ static result walls_count(facing *f, const cell_input *from)
 result partition_faces(partition *p, const cell_input *from, const allocator *memory)
 {
     if (p->nodes.count == 0) return RESULT_OK;
-    facing f = {.p = p, .stack = buffer_make(memory, sizeof(sunk)), .arrived = {buffer_make(memory, sizeof(sunk)), buffer_make(memory, sizeof(sunk))}};
+    facing f = {.p = p, .from = from, .stack = buffer_make(memory, sizeof(sunk)), .arrived = {buffer_make(memory, sizeof(sunk)), buffer_make(memory, sizeof(sunk))}};
     memcpy(f.origin, from->edges[0].start, sizeof f.origin);
     result r = brush_shape_cube(p->planes, f.cube) ? RESULT_OK : RESULT_NO_MEMORY;
     if (r == RESULT_OK) r = walls_count(&f, from);

@@ -6,9 +6,14 @@
 
 typedef struct plane_face { uint32_t plane, face; } plane_face;
 
-link_joiner link_joiner_make(const cell_set *cells, const plane_table *planes, const allocator *memory)
+link_joiner link_joiner_make(const cell_set *cells, const cell_input *from, const uint32_t *door_portals, const allocator *memory)
 {
-    return (link_joiner){cells, planes, flat_hulls_make(memory), buffer_make(memory, sizeof(plane_face))};
+    return (link_joiner){cells, from->planes, from->doors, door_portals, flat_hulls_make(memory), buffer_make(memory, sizeof(plane_face))};
+}
+
+uint32_t link_plane_of(const cell_face *f, const cell_door *doors)
+{
+    return f->door == CELL_NO_DOOR ? f->shape.plane >> 1 : LINK_DOOR | doors[f->door].group;
 }
 
 void link_joiner_free(link_joiner *j)
@@ -33,7 +38,7 @@ static result take_faces(const link_set *s, const room_link *l, link_joiner *j)
 {
     j->faces.count = 0;
     for (uint32_t f = l->first_face; f != LINK_NO_FACE; f = s->next_face[f]) {
-        const plane_face made = {face_at(j, f)->shape.plane >> 1, f};
+        const plane_face made = {link_plane_of(face_at(j, f), j->doors), f};
         if (!buffer_append(&j->faces, &made, 1)) return RESULT_NO_MEMORY;
     }
     qsort(j->faces.items, j->faces.count, sizeof(plane_face), by_plane);
@@ -55,6 +60,11 @@ static result count_portals(const link_set *s, room_link *l, link_joiner *j)
     uint32_t sum = 0;
     for (size_t i = 0, end; i < j->faces.count && r == RESULT_OK; i = end) {
         uint32_t left = 0;
+        if (all[i].plane & LINK_DOOR) {
+            for (end = i; end < j->faces.count && all[end].plane == all[i].plane;) ++end;
+            sum += j->door_portals[all[i].plane & ~LINK_DOOR];
+            continue;
+        }
         flat_hulls_start(&j->hulls, j->planes, all[i].plane << 1);
         for (end = i; end < j->faces.count && all[end].plane == all[i].plane && r == RESULT_OK; ++end) r = take_polygon(j, face_at(j, all[end].face));
         if (r == RESULT_OK) r = flat_hulls_join(&j->hulls, &left);

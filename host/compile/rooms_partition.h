@@ -33,6 +33,7 @@ static inline int partition_is_node(uint32_t child)
     return !(child & PART_LEAF);
 }
 
+void partition_plane(const partition *p, plane_ref plane, double out[4]); // unit normal
 result partition_build(partition *p, const cell_input *from, const allocator *memory);
 result partition_faces(partition *p, const cell_input *from, const allocator *memory);
 // The place of a polygon of p->edges that does not lie in the plane; its signs are for partition_cut, right after.

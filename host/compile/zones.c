@@ -247,7 +247,7 @@ static void check_closed(zone_build *b)
 
 static result part_rooms(zone_build *b, const compile_mesh *mesh)
 {
-    const result r = rooms_portals(b->in, &b->trace, &b->options->rooms, &b->portals);
+    const result r = rooms_portals(b->in, &b->trace, &b->options->rooms, b->report, &b->portals);
     return r == RESULT_OK ? settle(b, mesh) : r;
 }
 
@@ -306,7 +306,7 @@ result compile_zones_with(const compile_input *in, compile_mesh *mesh, const zon
 
 zone_options zone_options_of(portal_choice choice)
 {
-    return (zone_options){choice, {.openness = 1.1, .portals = 100}};
+    return (zone_options){choice, {.portals = 100}};
 }
 
 result compile_zones(const compile_input *in, compile_mesh *mesh, portal_choice choice, report *r, const allocator *memory, compiled_zones **out)

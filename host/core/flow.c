@@ -42,6 +42,7 @@ static void exit_make(flow *f, uint32_t place)
     *e = (flow_exit){.bend = f->gates[way / 2].bend, .way = way, .target = p->zones[1 - way % 2]};
     memcpy(e->at, f->scene->portal_points[p->first_point], sizeof e->at);
     for (int k = 0; k < 3; k++) e->normal[k] = way % 2 == 0 ? p->plane[k] : -p->plane[k];
+    f->entries[way ^ 1] = 1 + place - f->scene->zones[p->zones[way % 2]].first_portal;
 }
 
 // Planes that this box lies inside of are left out of the zone's volumes: it holds the items, and where movers may come
@@ -98,6 +99,7 @@ static result arrays_open(flow *f)
     f->seams = arena_push(a, zones, sizeof *f->seams);
     f->gates = arena_push(a, portals, sizeof *f->gates);
     f->exits = arena_push(a, 2 * portals, sizeof *f->exits);
+    f->entries = arena_push(a, 2 * portals, sizeof *f->entries);
     f->nodes = arena_push(a, nodes, sizeof *f->nodes);
     f->planes = arena_push(a, f->plane_capacity, sizeof *f->planes);
     f->records = arena_push(a, f->plane_capacity, sizeof *f->records);
@@ -112,7 +114,7 @@ static result arrays_open(flow *f)
     f->starts = arena_push(a, zones, sizeof *f->starts);
     f->volumes = arena_push(a, nodes, sizeof *f->volumes);
     f->by_zone = arena_push(a, nodes, sizeof *f->by_zone);
-    const int has_all = f->places && f->seams && f->gates && f->exits && f->nodes && f->planes && f->records && f->states && f->queue && f->queue_places && f->ways &&
+    const int has_all = f->places && f->seams && f->gates && f->exits && f->entries && f->nodes && f->planes && f->records && f->states && f->queue && f->queue_places && f->ways &&
                         f->polygon[0] && f->polygon[1] && f->order[0] && f->order[1] && f->found && f->sorted && f->starts && f->volumes &&
                         f->by_zone;
     if (!has_all) return RESULT_NO_MEMORY;

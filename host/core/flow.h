@@ -10,7 +10,7 @@
 #include "zone_data.h"
 
 enum {
-    FLOW_ZONE_VOLUMES = 16,  // volumes of a zone before they merge to their screen rectangle
+    FLOW_ZONE_VOLUMES = 32,  // volumes of a zone before they merge to their screen rectangle
     FLOW_CROSSINGS = 4096,   // volumes of a view that are not its whole frustum, before all that come merge
 };
 
@@ -28,6 +28,9 @@ typedef struct flow_crosser {
     // As cull_sight.part, before cross is asked about each part; one part too many is asked for, which has to be NONE. NULL, or SAME of
     // part 0: all goes to the portal.
     cull_crossing (*sight)(void *user, const flow_sight *q, cull_plane *planes, uint32_t *plane_count);
+    // 1: what is seen of a volume in that zone depends on the portal that it came in through, so that one through another portal is a volume
+    // of its own, though it lies inside. NULL: in no zone.
+    int (*is_by_entry)(void *user, uint32_t zone);
 } flow_crosser;
 
 typedef struct flow_request {

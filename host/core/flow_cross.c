@@ -152,6 +152,11 @@ static flow_record record_find(const flow_node *from, cull_plane plane)
     return (flow_record){plane, from->zone};
 }
 
+static int is_by_entry(const flow_crosser *c, uint32_t zone)
+{
+    return c->is_by_entry && c->is_by_entry(c->user, zone);
+}
+
 // What goes on from there passes no portal before the plane of its entry, whatever planes the crosser wrote: who lies in
 // it has to be behind that plane too.
 static int is_behind_entry(const flow *f, const crossing *c, const flow_node *other)
@@ -163,8 +168,11 @@ static int is_behind_entry(const flow *f, const crossing *c, const flow_node *ot
 
 static flow_node *find_around(const flow *f, const flow_state *s, const crossing *by, const flow_candidate *c, const flow_rectangle *r)
 {
+    const uint32_t entry = f->entries[by->way];
+    const int is_apart = is_by_entry(&by->request->crosser, by->target);
     for (uint32_t i = 0; i < s->count; i++) {
         flow_node *other = &f->nodes[s->nodes[i]];
+        if (is_apart && other->entry && other->entry != entry) continue;
         const int fits = r->low[0] >= other->rectangle.low[0] && r->low[1] >= other->rectangle.low[1] &&
                          r->high[0] <= other->rectangle.high[0] && r->high[1] <= other->rectangle.high[1];
         if (fits && is_behind_entry(f, by, other) && flow_is_inside(f, c, other)) return other;
@@ -180,6 +188,7 @@ static void narrow_add(flow *f, const crossing *c, const cull_plane *planes, uin
     const flow_rectangle rectangle = flow_rectangle_of(f, &c->polygon);
     flow_node *around = find_around(f, s, c, &(flow_candidate){records, &c->polygon, count, c->way}, &rectangle);
     if (around) {
+        if (around->entry != f->entries[c->way]) around->entry = 0;
         flow_nearer(f, around, c->key);
         return;
     }
@@ -188,6 +197,7 @@ static void narrow_add(flow *f, const crossing *c, const cull_plane *planes, uin
         return;
     }
     flow_node *n = node_new(f, c, count);
+    n->entry = f->entries[c->way];
     // Not what passed unclipped: that stands for every portal that brings its source, and lies not behind the first one's plane.
     if (flow_eye_height(f, c->way) > flow_near_m(f, c->from->zone, c->way / 2)) n->flags |= NODE_CLIPPED;
     n->source = f->source_count++;
@@ -259,7 +269,7 @@ static int part_clip(const flow *f, const cull_volume *part, crossing *c)
 // Part by part of what gets to the portal, where the zone can tell; SAME of one part is all there is.
 static void take_parts(flow *f, const crossing *whole, uint8_t before)
 {
-    const cull_volume in = {whole->from->planes, whole->from->plane_count, 0};
+    const cull_volume in = {whole->from->planes, whole->from->plane_count, whole->from->entry};
     flow_sight q = {&f->found[f->states[whole->from->zone].found].view, &in, whole->from->zone, whole->local, 0};
     int any = 0;
     for (; !(whole->from->flags & NODE_DEAD); q.part++) {

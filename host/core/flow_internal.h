@@ -39,6 +39,7 @@ typedef struct flow_node {
     cull_plane *planes; // relative to the zone's origin
     flow_record *records;
     uint32_t plane_count, zone, way, parent;
+    uint32_t entry;  // as of cull_volume
     uint32_t source; // 0: the view's whole frustum
     uint32_t flags, place; // place: in the result
     uint64_t path;   // bit (portal mod 64) of each portal on the way here: a quick "surely not"
@@ -88,6 +89,7 @@ struct flow {
     zone_seam *seams;     // by zone
     flow_gate *gates;     // by portal
     flow_exit *exits;     // 2 a portal, zone by zone
+    uint32_t *entries;    // by way: the entry of what comes through it, as of cull_volume
     box_tree *trees;      // of zones with many portals, over their portals' boxes, relative to nothing: world
     uint32_t *tree_of;    // by zone: in trees, or SCENE_NONE
     uint32_t tree_count;

@@ -42,7 +42,7 @@ static void volume_write(flow *f, flow_node *n)
     n->place = f->result.volume_count++;
     f->by_zone[n->place] = n->place;
     flow_volume *v = &f->volumes[n->place];
-    *v = (flow_volume){.volume = {n->planes, n->plane_count, 0}, .zone = n->zone, .way = n->way, .parent = n->parent,
+    *v = (flow_volume){.volume = {n->planes, n->plane_count, n->entry}, .zone = n->zone, .way = n->way, .parent = n->parent,
                        .is_merged = (n->flags & NODE_MERGED) != 0};
     for (int k = 0; k < 2; k++) { // outward to float, and never beyond the picture
         v->rectangle[k] = float_towards(-1, (float)n->rectangle.low[k]);

@@ -329,7 +329,7 @@ size_t world_explain(world_view *v, const explain_request *q, char *text, size_t
 {
     const world *w = v->world;
     writer out = {text, size, 0};
-    const explanation e = {v, w, {.camera = q->frame->camera, .frame = q->frame->frame, .open = v->open, .crosser = {v, world_view_cross, world_view_sight}}, &out};
+    const explanation e = {v, w, {.camera = q->frame->camera, .frame = q->frame->frame, .open = v->open, .crosser = {v, world_view_cross, world_view_sight, world_view_is_by_entry}}, &out};
     if (size) text[0] = 0;
     if (!v->serial) say(&out, "the view has not been culled yet\n");
     else if (q->item < w->scene->item_count) explain_item_of(&e, q->item);

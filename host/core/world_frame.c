@@ -87,11 +87,17 @@ cull_crossing world_view_sight(void *user, const flow_sight *q, cull_plane *plan
     return CULL_CROSS_SAME;
 }
 
+int world_view_is_by_entry(void *user, uint32_t zone)
+{
+    const world_view *v = user;
+    return v->zones[zone] && v->zones[zone]->sight;
+}
+
 // ---- Beginning ----
 
 static void run_flow(world_view *v, const frame_input *q)
 {
-    const flow_request request = {.camera = q->camera, .frame = q->frame, .open = v->open, .crosser = {v, world_view_cross, world_view_sight}};
+    const flow_request request = {.camera = q->camera, .frame = q->frame, .open = v->open, .crosser = {v, world_view_cross, world_view_sight, world_view_is_by_entry}};
     flow_run(v->flow, &request, &v->reached);
     v->stats->zones = v->reached.zone_count;
     v->stats->volumes = v->reached.volume_count;

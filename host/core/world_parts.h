@@ -97,6 +97,7 @@ result world_view_open_zone(world_view *v, uint32_t zone, const zone_chain *c, r
 cull_crossing world_view_cross(void *user, uint32_t zone, const cull_view *view, const cull_volume *in, uint32_t portal, cull_plane *planes,
                                uint32_t *plane_count);
 cull_crossing world_view_sight(void *user, const flow_sight *q, cull_plane *planes, uint32_t *plane_count);
+int world_view_is_by_entry(void *user, uint32_t zone);
 
 // ---- world_movers.c ----
 typedef struct mover_search { // movers of a zone, seen through its volumes

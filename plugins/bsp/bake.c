@@ -184,7 +184,7 @@ static cull_result check_tree(const cull_host *host, const bsp_source *from, con
 static cull_result arrays_alloc(const cull_host *host, const plane_table *table, bsp_tree *t)
 {
     int failed = 0;
-    t->planes = vector_copy(host, &table->planes, &failed);
+    t->planes = vector_copy(&table->planes, &failed);
     t->nodes = array_alloc(host, t->node_count, sizeof *t->nodes, &failed);
     t->leaves = array_alloc(host, t->leaf_count, sizeof *t->leaves, &failed);
     t->node_boxes = array_alloc(host, t->node_count, sizeof *t->node_boxes, &failed);

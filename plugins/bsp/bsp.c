@@ -265,7 +265,7 @@ static const cull_option bsp_options[OPTION_COUNT] = {
     [OPTION_BACKFACE] = {"backface", "0", "0 1", "1: drop one-sided walls that show only their back to the eye"},
     [OPTION_SPLIT] = {"split", "0", "0 1 node", "0: walls stay whole, listed in every leaf they reach; 1: their pieces stand in leaves; node: in the nodes whose plane they lie in"},
     [OPTION_CHOOSE] = {"choose", "balance", "balance sah first", "how planes are chosen: few splits and even sides, least expected cost, or as they come"},
-    [OPTION_CELLS] = {"cells", "off", "off rect hull exact", "what is seen flows through the openings between cells of the tree, as rectangles, hulls or exactly"},
+    [OPTION_CELLS] = {"cells", "off", "off rect hull exact", "what is seen flows through the openings between cells of the tree: one rectangle a cell, up to four convex windows, or up to sixteen, nearly exact"},
     [OPTION_ISA] = {"isa", "auto", NULL, "instruction set: auto, avx2, plain; all find the same set"},
 };
 

@@ -11,9 +11,7 @@ static uint32_t *list_of(const tree_maker *m, uint32_t first)
 
 static int task_push(tree_maker *m, tree_task task)
 {
-    tree_task *to = vector_push(m->host, &m->tasks, 1);
-    if (to) *to = task;
-    return to != NULL;
+    return vector_add(&m->tasks, &task);
 }
 
 static void child_is(tree_maker *m, const tree_task *task, uint32_t child)
@@ -23,15 +21,13 @@ static void child_is(tree_maker *m, const tree_task *task, uint32_t child)
 
 static int file_piece(tree_maker *m, uint32_t owner, uint32_t piece)
 {
-    tree_filing *to = vector_push(m->host, &m->filings, 1);
-    if (to) *to = (tree_filing){owner, piece_at(&m->set, piece)->item, piece};
-    return to != NULL;
+    return vector_add(&m->filings, &(tree_filing){owner, piece_at(&m->set, piece)->item, piece});
 }
 
 static int leaf_make(tree_maker *m, const tree_task *task)
 {
     const uint32_t number = m->leaves.count;
-    bsp_leaf *leaf = vector_push(m->host, &m->leaves, 1);
+    bsp_leaf *leaf = vector_push(&m->leaves, 1);
     if (!leaf) return 0;
     *leaf = (bsp_leaf){.parent = task->parent};
     child_is(m, task, number | BSP_LEAF);
@@ -42,29 +38,22 @@ static int leaf_make(tree_maker *m, const tree_task *task)
 
 // ---- A set divided ----
 
-static int put_aside(tree_maker *m, int side, uint32_t piece)
-{
-    uint32_t *to = vector_push(m->host, &m->aside[side], 1);
-    if (to) *to = piece;
-    return to != NULL;
-}
-
 static int piece_sort(tree_maker *m, uint32_t piece, uint32_t node, uint32_t plane)
 {
     uint32_t parts[2];
     const piece_side side = piece_side_of(&m->set, piece, plane);
     if (side == PIECE_SPANS) {
-        if (!piece_cut(m->host, &m->set, piece, plane, parts)) return 0;
+        if (!piece_cut(&m->set, piece, plane, parts)) return 0;
         m->splits++;
-        return put_aside(m, 0, parts[0]) && put_aside(m, 1, parts[1]);
+        return vector_add(&m->aside[0], &parts[0]) && vector_add(&m->aside[1], &parts[1]);
     }
     if (m->wish.split == BSP_SPLIT_NODES && (side == PIECE_ON_FRONT || side == PIECE_ON_BACK)) return file_piece(m, node, piece);
-    return put_aside(m, side == PIECE_BACK || side == PIECE_ON_BACK, piece);
+    return vector_add(&m->aside[side == PIECE_BACK || side == PIECE_ON_BACK], &piece);
 }
 
 static int list_append(tree_maker *m, const bsp_vector *from)
 {
-    uint32_t *to = vector_push(m->host, &m->lists, from->count);
+    uint32_t *to = vector_push(&m->lists, from->count);
     if (to && from->count) memcpy(to, from->items, from->count * sizeof *to);
     return to != NULL;
 }
@@ -72,7 +61,7 @@ static int list_append(tree_maker *m, const bsp_vector *from)
 static int node_make(tree_maker *m, const tree_task *task, uint32_t plane)
 {
     const uint32_t number = m->nodes.count;
-    bsp_node *node = vector_push(m->host, &m->nodes, 1);
+    bsp_node *node = vector_push(&m->nodes, 1);
     if (!node) return 0;
     *node = (bsp_node){.plane = plane, .parent = task->parent};
     child_is(m, task, number);
@@ -91,7 +80,7 @@ static int task_run(tree_maker *m, const tree_task *task)
 {
     uint32_t plane = BSP_NONE;
     if (task->depth > m->depth) m->depth = task->depth;
-    const choice made = chooser_choose(m->host, &m->chooser, list_of(m, task->first), task->count, &plane);
+    const choice made = chooser_choose(&m->chooser, list_of(m, task->first), task->count, &plane);
     if (made == CHOICE_MEMORY) return 0;
     if (made == CHOICE_PLANE && task->depth < m->depth_most && m->set.pieces.count < m->pieces_most) return node_make(m, task, plane);
     m->bent_leaves += made != CHOICE_CONVEX;
@@ -103,7 +92,7 @@ static int task_run(tree_maker *m, const tree_task *task)
 cull_result tree_divide(tree_maker *m)
 {
     const uint32_t count = m->set.pieces.count;
-    uint32_t *all = vector_push(m->host, &m->lists, count);
+    uint32_t *all = vector_push(&m->lists, count);
     int is_good = all && task_push(m, (tree_task){0, count, BSP_NONE, 0, 0});
     for (uint32_t i = 0; i < count && is_good; i++) all[i] = i;
     while (is_good && m->tasks.count) {
@@ -117,8 +106,8 @@ cull_result tree_divide(tree_maker *m)
 void tree_maker_free(tree_maker *m)
 {
     bsp_vector *const all[] = {&m->nodes, &m->leaves, &m->filings, &m->tasks, &m->lists, &m->aside[0], &m->aside[1]};
-    for (size_t i = 0; i < sizeof all / sizeof *all; i++) vector_free(m->host, all[i]);
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) vector_free(all[i]);
     chooser_free(m->host, &m->chooser);
-    piece_set_free(m->host, &m->set);
+    piece_set_free(&m->set);
     bsp_planes_free(m->host, &m->table);
 }

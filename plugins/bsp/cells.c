@@ -8,20 +8,20 @@
 static cells_build build_make(const cull_host *host, const cull_zone *zone, const bsp_tree *tree)
 {
     const cells_build b = {.host = host, .zone = zone, .tree = tree, .slack = tree->slack, .steps_per_metre = tree->steps_per_metre,
-                           .planes = cells_list_make(host, sizeof(bsp_plane)), .exact = cells_list_make(host, sizeof(exact_plane)),
-                           .points = cells_list_make(host, sizeof(cull_point)), .stands = cells_list_make(host, sizeof(cells_stand)),
-                           .made = cells_list_make(host, sizeof(cells_made)), .nodes = cells_list_make(host, sizeof(bsp_node)),
-                           .cells = cells_list_make(host, sizeof(bsp_cell)), .entries = cells_list_make(host, sizeof(bsp_entry)),
-                           .entry_points = cells_list_make(host, sizeof(cull_point)), .interfaces = cells_list_make(host, sizeof(cells_interface)),
-                           .opening_points = cells_list_make(host, sizeof(cull_point)), .sets = cells_list_make(host, sizeof(cells_set))};
+                           .planes = vector_make(host, sizeof(bsp_plane)), .exact = vector_make(host, sizeof(exact_plane)),
+                           .points = vector_make(host, sizeof(cull_point)), .stands = vector_make(host, sizeof(cells_stand)),
+                           .made = vector_make(host, sizeof(cells_made)), .nodes = vector_make(host, sizeof(bsp_node)),
+                           .cells = vector_make(host, sizeof(bsp_cell)), .entries = vector_make(host, sizeof(bsp_entry)),
+                           .entry_points = vector_make(host, sizeof(cull_point)), .interfaces = vector_make(host, sizeof(cells_interface)),
+                           .opening_points = vector_make(host, sizeof(cull_point)), .sets = vector_make(host, sizeof(cells_set))};
     return b;
 }
 
 static void build_free(cells_build *b)
 {
-    cells_list *const lists[] = {&b->planes, &b->exact, &b->points, &b->stands, &b->made, &b->nodes, &b->cells, &b->entries,
+    bsp_vector *const lists[] = {&b->planes, &b->exact, &b->points, &b->stands, &b->made, &b->nodes, &b->cells, &b->entries,
                                  &b->entry_points, &b->interfaces, &b->opening_points, &b->sets};
-    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) cells_list_free(lists[i]);
+    for (size_t i = 0; i < sizeof lists / sizeof lists[0]; i++) vector_free(lists[i]);
 }
 
 // ---- Planes ----
@@ -45,7 +45,7 @@ static cells_status box_add(cells_build *b)
         plane.normal[axis] = is_high ? -1 : 1;
         b->box[i] = b->planes.count;
         (is_high ? b->box_high : b->box_low)[axis] = (double)at / b->steps_per_metre;
-        if (!cells_list_add(&b->planes, &plane)) return CELLS_NO_MEMORY;
+        if (!vector_add(&b->planes, &plane)) return CELLS_NO_MEMORY;
     }
     return CELLS_FINE;
 }
@@ -53,11 +53,11 @@ static cells_status box_add(cells_build *b)
 static cells_status planes_match(cells_build *b)
 {
     const uint32_t count = b->planes.count;
-    cells_list scratch = cells_list_make(b->host, sizeof(uint32_t));
+    bsp_vector scratch = vector_make(b->host, sizeof(uint32_t));
     uint32_t slots = 16;
     while (slots < 2 * count && slots < 1u << 31) slots *= 2;
-    exact_plane *exact = cells_list_push(&b->exact, count);
-    uint32_t *words = cells_list_reserve(&scratch, slots);
+    exact_plane *exact = vector_push(&b->exact, count);
+    uint32_t *words = vector_reserve(&scratch, slots);
     if (exact && words) {
         for (uint32_t i = 0; i < count; i++) {
             const cull_wide_plane *plane = &cells_plane(b, i)->exact;
@@ -65,7 +65,7 @@ static cells_status planes_match(cells_build *b)
         }
         exact_planes_match(exact, count, words, slots);
     }
-    cells_list_free(&scratch);
+    vector_free(&scratch);
     return exact && words ? CELLS_FINE : CELLS_NO_MEMORY;
 }
 
@@ -79,8 +79,8 @@ static int fits(const bsp_tree *tree, const cull_zone *zone)
 
 static cells_status build_run(cells_build *b, bsp_cells_data *out)
 {
-    cells_list pieces = cells_list_make(b->host, sizeof(cells_piece));
-    void *planes = b->tree->plane_count ? cells_list_push(&b->planes, b->tree->plane_count) : 0;
+    bsp_vector pieces = vector_make(b->host, sizeof(cells_piece));
+    void *planes = b->tree->plane_count ? vector_push(&b->planes, b->tree->plane_count) : 0;
     cells_status status = b->tree->plane_count && !planes ? CELLS_NO_MEMORY : CELLS_FINE;
     if (planes) memcpy(planes, b->tree->planes, b->tree->plane_count * sizeof(bsp_plane));
     if (status == CELLS_FINE) status = cells_gather(b, &pieces);
@@ -91,7 +91,7 @@ static cells_status build_run(cells_build *b, bsp_cells_data *out)
     if (status == CELLS_FINE) status = cells_find_sets(b);
     if (status == CELLS_FINE) status = cells_find_touching(b);
     if (status == CELLS_FINE) status = cells_hand_over(b, out);
-    cells_list_free(&pieces);
+    vector_free(&pieces);
     return status;
 }
 
@@ -119,7 +119,7 @@ cull_result bsp_cells_build(const cull_host *host, const cull_zone *zone, const 
 
 typedef struct held { void *items; size_t bytes; } held;
 
-enum { HELD = 9 };
+enum { HELD = 10 };
 
 static void held_of(const bsp_cells_data *c, held out[HELD])
 {
@@ -131,7 +131,8 @@ static void held_of(const bsp_cells_data *c, held out[HELD])
                             {c->entries, c->entry_count * sizeof *c->entries},
                             {c->entry_points, c->entry_point_count * sizeof *c->entry_points},
                             {c->portal_offsets, (c->portal_count + (size_t)1) * sizeof *c->portal_offsets},
-                            {c->portal_cells, c->portal_cell_count * sizeof *c->portal_cells}};
+                            {c->stands, c->stand_count * sizeof *c->stands},
+                            {c->stand_points, c->stand_point_count * sizeof *c->stand_points}};
     memcpy(out, all, sizeof all);
 }
 

@@ -26,19 +26,28 @@ typedef struct bsp_cell {
     uint32_t apart_count;                    // of them, the first: no open way leads around to the cell that they face
 } bsp_cell;
 
+// The part of a zone portal that borders a cell from inside.
+typedef struct bsp_stand {
+    uint32_t cell;
+    uint32_t first_point, point_count; // in stand_points, counterclockwise seen from inside, as the portal's own
+    uint32_t is_bent;                  // as loop_is_bent has it
+} bsp_stand;
+
 typedef struct bsp_cells_data {
     bsp_plane *planes;     // of nodes
     bsp_node *nodes;       // a tree of its own, its planes chosen for few cells: 30% fewer than the select's tree cut on; a leaf child is a cell
     bsp_cell *cells;
     bsp_opening *openings; // by cell
     cull_point *opening_points, *entry_points;
+    cull_vec3 *stand_points;
     bsp_entry *entries;
     uint32_t plane_count, node_count, cell_count, opening_count, opening_point_count, entry_count, entry_point_count;
-    uint32_t portal_count, portal_cell_count;
+    uint32_t portal_count, stand_count, stand_point_count;
     // Portals shut openings for who looks out of the zone, but for those that lead to air of this same zone (cells_sets.c); an eye a hair
-    // beyond one still sees in. A portal that reaches over rock (walls' backs
-    // all around) lists its cells of air alone, unless it has none.
-    uint32_t *portal_offsets, *portal_cells; // cells that zone portal p borders from inside: portal_cells[portal_offsets[p] .. portal_offsets[p + 1])
+    // beyond one still sees in. A portal that reaches over rock (walls' backs all around) has stands in its cells of air alone, unless it
+    // borders none.
+    uint32_t *portal_offsets; // stands of zone portal p: [portal_offsets[p] .. portal_offsets[p + 1]), by cell
+    bsp_stand *stands;
     double slack;
     double box_low[3], box_high[3]; // metres: openings are cut to it. An eye outside sees in through zone portals alone
     uint32_t depth;                 // of nodes

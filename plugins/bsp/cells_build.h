@@ -7,8 +7,8 @@
 #define PORTCULLIS_BSP_CELLS_BUILD_H
 
 #include "cells.h"
-#include "cells_list.h"
 #include "exact_polygon.h"
+#include "vector.h"
 
 #include <portcullis/clip.h>
 
@@ -55,29 +55,29 @@ typedef struct cells_build {
     const cull_zone *zone;
     const bsp_tree *tree;
     double slack, steps_per_metre;
-    cells_list planes;         // bsp_plane: the tree's, portals' own, and at the end six of the box
-    cells_list exact;          // exact_plane, of the same
+    bsp_vector planes;         // bsp_plane: the tree's, portals' own, and at the end six of the box
+    bsp_vector exact;          // exact_plane, of the same
     uint32_t plane_count;      // without the box's
     uint32_t box[6];           // low and high x, y, z: planes
     double box_low[3], box_high[3]; // metres
-    cells_list points;         // cull_point, of pieces
-    cells_list stands, made;   // cells_stand, by cell; cells_made, one a cell
-    cells_list nodes, cells;   // bsp_node, bsp_cell
-    cells_list entries, entry_points;       // bsp_entry, cull_point
-    cells_list interfaces, opening_points;  // cells_interface, cull_point
-    cells_list sets;                        // cells_set, by cell
+    bsp_vector points;         // cull_point, of pieces
+    bsp_vector stands, made;   // cells_stand, by cell; cells_made, one a cell
+    bsp_vector nodes, cells;   // bsp_node, bsp_cell
+    bsp_vector entries, entry_points;       // bsp_entry, cull_point
+    bsp_vector interfaces, opening_points;  // cells_interface, cull_point
+    bsp_vector sets;                        // cells_set, by cell
     uint64_t work;
     uint32_t depth;    // of nodes
     uint32_t given_up; // interfaces that fell into too many fragments
 } cells_build;
 
 // Walls, clusters and portals as pieces, appended to `out` (cells_piece).
-cells_status cells_gather(cells_build *b, cells_list *out);
+cells_status cells_gather(cells_build *b, bsp_vector *out);
 // Nodes, cells, their entries and stands.
-cells_status cells_split(cells_build *b, cells_list *pieces);
+cells_status cells_split(cells_build *b, bsp_vector *pieces);
 cells_status cells_find_openings(cells_build *b);
 // Sets found->open by the walls and portals that border its two cells.
-cells_status cells_cover(cells_build *b, cells_interface *found, cells_list *scratch);
+cells_status cells_cover(cells_build *b, cells_interface *found, bsp_vector *scratch);
 // Finds the sets of cells, and opens what a portal shut though air of this zone lies behind it.
 cells_status cells_find_sets(cells_build *b);
 uint32_t cells_root(cells_build *b, uint32_t cell);

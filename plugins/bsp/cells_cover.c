@@ -19,7 +19,7 @@ typedef struct bounds { double low[3], high[3]; } bounds;
 
 typedef struct cover {
     cells_build *b;
-    cells_list *points; // scratch, cull_point
+    bsp_vector *points; // scratch, cull_point
     bounds bounds;      // of the opening
     uint32_t plane;     // that it lies in
     fragment fragments[CELLS_FRAGMENTS_MOST];
@@ -103,7 +103,7 @@ static fragment clipped(cover *c, fragment f, cull_cut cut) // room was reserved
 
 static int reserve_for(cover *c, fragment f)
 {
-    return f.count < UINT32_MAX / 8 && cells_list_reserve(c->points, 4 * f.count) != 0;
+    return f.count < UINT32_MAX / 8 && vector_reserve(c->points, 4 * f.count) != 0;
 }
 
 // 1: the fragment and the wall have something in common.
@@ -280,9 +280,9 @@ typedef struct cover_sight { int is_open, is_open_without_portals; } cover_sight
 
 static cells_status cover_side(cover *c, const cells_interface *found, const cull_point *points, uint32_t side, cover_sight *out)
 {
-    cells_list *scratch = c->points;
+    bsp_vector *scratch = c->points;
     scratch->count = 0;
-    cull_point *own = cells_list_push(scratch, found->point_count);
+    cull_point *own = vector_push(scratch, found->point_count);
     if (!own) return CELLS_NO_MEMORY;
     memcpy(own, points, found->point_count * sizeof *own);
     c->fragments[0] = (fragment){0, found->point_count};
@@ -297,7 +297,7 @@ static cells_status cover_side(cover *c, const cells_interface *found, const cul
     return step == COVER_NO_MEMORY ? CELLS_NO_MEMORY : CELLS_FINE;
 }
 
-cells_status cells_cover(cells_build *b, cells_interface *found, cells_list *scratch)
+cells_status cells_cover(cells_build *b, cells_interface *found, bsp_vector *scratch)
 {
     const cull_point *points = (const cull_point *)b->opening_points.items + found->first_point;
     cover c = {.b = b, .points = scratch, .plane = found->plane, .bounds = bounds_of(points, found->point_count)};

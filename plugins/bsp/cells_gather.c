@@ -13,27 +13,27 @@ static const double NORMAL_SCALE = 68719476736; // 2^36: the largest number of a
 
 typedef struct items { uint32_t *places, *planes; } items; // by the zone's own numbers: the cells do not depend on the tree's order
 
-static cells_status wall_add(cells_build *b, cells_list *out, const items *all, uint32_t item)
+static cells_status wall_add(cells_build *b, bsp_vector *out, const items *all, uint32_t item)
 {
     const cull_wall *wall = &b->zone->walls[item];
     const cells_piece made = {.item = all->places[item], .plane = all->planes[item], .first_point = b->points.count, .point_count = wall->vertex_count};
-    cull_point *to = cells_list_push(&b->points, wall->vertex_count);
+    cull_point *to = vector_push(&b->points, wall->vertex_count);
     if (!to) return CELLS_NO_MEMORY;
     for (uint32_t i = 0; i < wall->vertex_count; i++) {
         const cull_vec3 p = b->zone->positions[b->zone->wall_vertices[wall->first_vertex + i]];
         to[i] = (cull_point){(double)p.x, (double)p.y, (double)p.z};
     }
-    return cells_list_add(out, &made) ? CELLS_FINE : CELLS_NO_MEMORY;
+    return vector_add(out, &made) ? CELLS_FINE : CELLS_NO_MEMORY;
 }
 
-static cells_status items_add(cells_build *b, cells_list *out, const items *all)
+static cells_status items_add(cells_build *b, bsp_vector *out, const items *all)
 {
     cells_status status = CELLS_FINE;
     for (uint32_t item = 0; item < b->tree->item_count && status == CELLS_FINE; item++)
         if (all->planes[item] != BSP_NONE) status = wall_add(b, out, all, item);
     for (uint32_t item = 0; item < b->tree->item_count && status == CELLS_FINE; item++) {
         const cells_piece box = {.item = all->places[item], .plane = BSP_NONE, .flags = PIECE_BOX};
-        if (all->planes[item] == BSP_NONE && !cells_list_add(out, &box)) status = CELLS_NO_MEMORY;
+        if (all->planes[item] == BSP_NONE && !vector_add(out, &box)) status = CELLS_NO_MEMORY;
     }
     return status;
 }
@@ -137,10 +137,10 @@ static cells_status portal_plane(cells_build *b, const cull_portal *portal, uint
     }
     if ((made.normal[0] * into[0] + made.normal[1] * into[1]) + made.normal[2] * into[2] < 0) made = plane_in_metres(b, cull_wide_plane_flipped(made.exact));
     *out = b->planes.count;
-    return cells_list_add(&b->planes, &made) ? CELLS_FINE : CELLS_NO_MEMORY;
+    return vector_add(&b->planes, &made) ? CELLS_FINE : CELLS_NO_MEMORY;
 }
 
-static cells_status portal_add(cells_build *b, cells_list *out, uint32_t index)
+static cells_status portal_add(cells_build *b, bsp_vector *out, uint32_t index)
 {
     const cull_portal *portal = &b->zone->portals[index];
     cells_piece made = {.item = index, .first_point = b->points.count, .point_count = portal->point_count, .flags = PIECE_PORTAL};
@@ -150,19 +150,19 @@ static cells_status portal_add(cells_build *b, cells_list *out, uint32_t index)
         b->host->log(b->host, CULL_LOG_WARN, "bsp: a zone portal has no area: its cells are not told, nothing is seen through it");
         return CELLS_FINE;
     }
-    cull_point *to = cells_list_push(&b->points, portal->point_count);
+    cull_point *to = vector_push(&b->points, portal->point_count);
     if (!to) return CELLS_NO_MEMORY;
     for (uint32_t i = 0; i < portal->point_count; i++) {
         const cull_vec3 p = portal->points[i];
         to[i] = (cull_point){(double)p.x, (double)p.y, (double)p.z};
     }
-    return cells_list_add(out, &made) ? CELLS_FINE : CELLS_NO_MEMORY;
+    return vector_add(out, &made) ? CELLS_FINE : CELLS_NO_MEMORY;
 }
 
-cells_status cells_gather(cells_build *b, cells_list *out)
+cells_status cells_gather(cells_build *b, bsp_vector *out)
 {
-    cells_list numbers = cells_list_make(b->host, 2 * sizeof(uint32_t));
-    uint32_t *both = cells_list_reserve(&numbers, b->tree->item_count + 1);
+    bsp_vector numbers = vector_make(b->host, 2 * sizeof(uint32_t));
+    uint32_t *both = vector_reserve(&numbers, b->tree->item_count + 1);
     cells_status status = both ? CELLS_FINE : CELLS_NO_MEMORY;
     if (both) {
         items all = {both, both + b->tree->item_count};
@@ -170,6 +170,6 @@ cells_status cells_gather(cells_build *b, cells_list *out)
         for (uint32_t i = 0; i < b->zone->portal_count && status == CELLS_FINE; i++) status = portal_add(b, out, i);
         if (status == CELLS_FINE) status = items_add(b, out, &all);
     }
-    cells_list_free(&numbers);
+    vector_free(&numbers);
     return status;
 }

@@ -10,9 +10,9 @@ typedef struct sunk { exact_polygon shape; uint32_t at; } sunk; // at: a node, o
 typedef struct openings {
     cells_build *b;
     exact_pool pool;
-    cells_list stack;      // sunk
-    cells_list arrived[2]; // sunk: on the front side, and from there on the other
-    cells_list scratch;    // cull_point, of cells_cover
+    bsp_vector stack;      // sunk
+    bsp_vector arrived[2]; // sunk: on the front side, and from there on the other
+    bsp_vector scratch;    // cull_point, of cells_cover
 } openings;
 
 static const bsp_node *node_at(const openings *o, uint32_t node)
@@ -61,7 +61,7 @@ static cells_status sink_step(openings *o, const sunk *s, uint32_t side)
     if (place == EXACT_ACROSS && !exact_polygon_cut(&o->pool, &s->shape, node->plane, &parts[0], &parts[1])) return CELLS_NO_MEMORY;
     for (uint32_t i = 2; i-- > 0;) {
         const sunk next = {parts[i], node->child[i]};
-        if (place & (i ? EXACT_BEHIND : EXACT_FRONT) && !cells_list_add(&o->stack, &next)) return CELLS_NO_MEMORY;
+        if (place & (i ? EXACT_BEHIND : EXACT_FRONT) && !vector_add(&o->stack, &next)) return CELLS_NO_MEMORY;
     }
     return CELLS_FINE;
 }
@@ -69,13 +69,13 @@ static cells_status sink_step(openings *o, const sunk *s, uint32_t side)
 static cells_status sink(openings *o, exact_polygon shape, uint32_t node, uint32_t side)
 {
     const sunk first = {shape, node_at(o, node)->child[side]};
-    cells_list *arrived = &o->arrived[side];
+    bsp_vector *arrived = &o->arrived[side];
     arrived->count = 0;
-    cells_status status = cells_list_add(&o->stack, &first) ? CELLS_FINE : CELLS_NO_MEMORY;
+    cells_status status = vector_add(&o->stack, &first) ? CELLS_FINE : CELLS_NO_MEMORY;
     while (o->stack.count > 0 && status == CELLS_FINE) {
         const sunk s = ((const sunk *)o->stack.items)[--o->stack.count];
         if (!(s.at & BSP_LEAF)) status = sink_step(o, &s, side);
-        else if (!cells_list_add(arrived, &s)) status = CELLS_NO_MEMORY;
+        else if (!vector_add(arrived, &s)) status = CELLS_NO_MEMORY;
     }
     o->stack.count = 0;
     return status;
@@ -86,13 +86,13 @@ static cells_status interface_add(openings *o, const sunk *found, uint32_t front
     cells_build *b = o->b;
     cells_interface made = {.cells = {front & ~BSP_LEAF, found->at & ~BSP_LEAF}, .plane = found->shape.plane, .first_point = b->opening_points.count,
                             .point_count = found->shape.count};
-    cull_point *to = cells_list_push(&b->opening_points, made.point_count);
+    cull_point *to = vector_push(&b->opening_points, made.point_count);
     if (!to) return CELLS_NO_MEMORY;
     const exact_edge *edges = exact_edges(&o->pool, &found->shape);
     for (uint32_t i = 0; i < made.point_count; i++)
         to[i] = (cull_point){edges[i].start[0] / b->steps_per_metre, edges[i].start[1] / b->steps_per_metre, edges[i].start[2] / b->steps_per_metre};
     cells_status status = cells_cover(b, &made, &o->scratch);
-    if (status == CELLS_FINE && !cells_list_add(&b->interfaces, &made)) status = CELLS_NO_MEMORY;
+    if (status == CELLS_FINE && !vector_add(&b->interfaces, &made)) status = CELLS_NO_MEMORY;
     return status;
 }
 
@@ -113,23 +113,23 @@ static cells_status node_openings(openings *o, uint32_t node)
 
 static int is_too_many(const cells_build *b)
 {
-    const uint64_t bytes = (uint64_t)b->opening_points.room * sizeof(cull_point) + (uint64_t)b->interfaces.room * sizeof(cells_interface);
+    const uint64_t bytes = (uint64_t)b->opening_points.capacity * sizeof(cull_point) + (uint64_t)b->interfaces.capacity * sizeof(cells_interface);
     return b->work > CELLS_WORK_MOST || bytes > CELLS_BYTES_MOST;
 }
 
 cells_status cells_find_openings(cells_build *b)
 {
-    openings o = {.b = b, .pool = exact_pool_make(b->host, b->exact.items), .stack = cells_list_make(b->host, sizeof(sunk)),
-                  .scratch = cells_list_make(b->host, sizeof(cull_point))};
-    for (int side = 0; side < 2; side++) o.arrived[side] = cells_list_make(b->host, sizeof(sunk));
+    openings o = {.b = b, .pool = exact_pool_make(b->host, b->exact.items), .stack = vector_make(b->host, sizeof(sunk)),
+                  .scratch = vector_make(b->host, sizeof(cull_point))};
+    for (int side = 0; side < 2; side++) o.arrived[side] = vector_make(b->host, sizeof(sunk));
     cells_status status = CELLS_FINE;
     for (uint32_t node = 0; node < b->nodes.count && status == CELLS_FINE; node++) {
         status = node_openings(&o, node);
         if (status == CELLS_FINE && is_too_many(b)) status = CELLS_TOO_MANY;
     }
     exact_pool_free(&o.pool);
-    cells_list_free(&o.stack);
-    cells_list_free(&o.scratch);
-    for (int side = 0; side < 2; side++) cells_list_free(&o.arrived[side]);
+    vector_free(&o.stack);
+    vector_free(&o.scratch);
+    for (int side = 0; side < 2; side++) vector_free(&o.arrived[side]);
     return status;
 }

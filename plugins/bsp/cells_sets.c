@@ -87,7 +87,7 @@ static uint32_t reopen(cells_build *b)
 
 cells_status cells_find_sets(cells_build *b)
 {
-    if (!cells_list_push(&b->sets, b->cells.count)) return CELLS_NO_MEMORY; // there is one cell at least
+    if (!vector_push(&b->sets, b->cells.count)) return CELLS_NO_MEMORY; // there is one cell at least
     sets_make(b);
     if (reopen(b)) sets_make(b);
     return CELLS_FINE;

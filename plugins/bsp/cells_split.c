@@ -17,8 +17,8 @@ typedef struct split_task { uint32_t first, count, parent, side, depth; } split_
 
 typedef struct split {
     cells_build *b;
-    cells_list stack, tasks, parts[2]; // cells_piece, split_task, cells_piece in front and behind
-    cells_list seen;                   // uint32_t a plane: the turn in which it was tried last
+    bsp_vector stack, tasks, parts[2]; // cells_piece, split_task, cells_piece in front and behind
+    bsp_vector seen;                   // uint32_t a plane: the turn in which it was tried last
     uint32_t turn;
 } split;
 
@@ -133,7 +133,7 @@ static uint32_t splitter_of(split *s, const split_task *t)
 
 static cells_status part_add(split *s, int side, const cells_piece *p)
 {
-    return cells_list_add(&s->parts[side], p) ? CELLS_FINE : CELLS_NO_MEMORY;
+    return vector_add(&s->parts[side], p) ? CELLS_FINE : CELLS_NO_MEMORY;
 }
 
 static cells_status part_on(split *s, const cells_piece *p, uint32_t by)
@@ -155,9 +155,9 @@ static cells_status part_on(split *s, const cells_piece *p, uint32_t by)
 
 static cells_status part_cut(split *s, const cells_piece *p, uint32_t by, int side)
 {
-    cells_list *points = &s->b->points;
+    bsp_vector *points = &s->b->points;
     const uint32_t room = 2 * p->point_count; // see cull_polygon_clip
-    cull_point *to = cells_list_reserve(points, room);
+    cull_point *to = vector_reserve(points, room);
     if (!to) return CELLS_NO_MEMORY;
     const bsp_plane *plane = cells_plane(s->b, by);
     const double sign = side ? -1 : 1;
@@ -192,11 +192,11 @@ static cells_status tasks_add(split *s, const split_task *above, uint32_t number
     for (uint32_t side = 2; side-- > 0;) {
         const split_task next = {s->stack.count, s->parts[side].count, number, side, above->depth + 1};
         if (next.count) {
-            void *to = cells_list_push(&s->stack, next.count);
+            void *to = vector_push(&s->stack, next.count);
             if (!to) return CELLS_NO_MEMORY;
-            memcpy(to, s->parts[side].items, s->parts[side].size * next.count);
+            memcpy(to, s->parts[side].items, s->parts[side].item_size * next.count);
         }
-        if (!cells_list_add(&s->tasks, &next)) return CELLS_NO_MEMORY;
+        if (!vector_add(&s->tasks, &next)) return CELLS_NO_MEMORY;
     }
     return CELLS_FINE;
 }
@@ -206,7 +206,7 @@ static cells_status node_make(split *s, const split_task *t, uint32_t plane)
     cells_build *b = s->b;
     const uint32_t number = b->nodes.count;
     const bsp_node node = {.plane = plane, .child = {BSP_NONE, BSP_NONE}, .parent = t->parent};
-    if (!cells_list_add(&b->nodes, &node)) return CELLS_NO_MEMORY;
+    if (!vector_add(&b->nodes, &node)) return CELLS_NO_MEMORY;
     child_set(b, t, number);
     s->parts[0].count = s->parts[1].count = 0;
     cells_status status = CELLS_FINE;
@@ -224,17 +224,17 @@ static cells_status entry_add(cells_build *b, const cells_piece *p)
 {
     const bsp_entry entry = {p->item, b->entry_points.count, p->point_count, p->plane};
     if (p->point_count) {
-        cull_point *to = cells_list_push(&b->entry_points, p->point_count);
+        cull_point *to = vector_push(&b->entry_points, p->point_count);
         if (!to) return CELLS_NO_MEMORY;
         memcpy(to, (const cull_point *)b->points.items + p->first_point, p->point_count * sizeof *to);
     }
-    return cells_list_add(&b->entries, &entry) ? CELLS_FINE : CELLS_NO_MEMORY;
+    return vector_add(&b->entries, &entry) ? CELLS_FINE : CELLS_NO_MEMORY;
 }
 
 static cells_status stand_add(cells_build *b, const cells_piece *p)
 {
     const cells_stand stand = {p->item, b->cells.count, p->plane, p->first_point, p->point_count};
-    return cells_list_add(&b->stands, &stand) ? CELLS_FINE : CELLS_NO_MEMORY;
+    return vector_add(&b->stands, &stand) ? CELLS_FINE : CELLS_NO_MEMORY;
 }
 
 static cells_status cell_make(split *s, const split_task *t)
@@ -256,14 +256,14 @@ static cells_status cell_make(split *s, const split_task *t)
     cell.back_count = b->entries.count - cell.first_back;
     s->stack.count = t->first;
     child_set(b, t, BSP_LEAF | b->cells.count);
-    if (status == CELLS_FINE && !(cells_list_add(&b->cells, &cell) && cells_list_add(&b->made, &made))) status = CELLS_NO_MEMORY;
+    if (status == CELLS_FINE && !(vector_add(&b->cells, &cell) && vector_add(&b->made, &made))) status = CELLS_NO_MEMORY;
     return status;
 }
 
 static int is_too_many(const cells_build *b, const split *s)
 {
-    const uint64_t bytes = (uint64_t)(b->points.room + (uint64_t)b->entry_points.room) * sizeof(cull_point) +
-                           (uint64_t)s->stack.room * sizeof(cells_piece) + (uint64_t)b->entries.room * sizeof(bsp_entry);
+    const uint64_t bytes = (uint64_t)(b->points.capacity + (uint64_t)b->entry_points.capacity) * sizeof(cull_point) +
+                           (uint64_t)s->stack.capacity * sizeof(cells_piece) + (uint64_t)b->entries.capacity * sizeof(bsp_entry);
     return b->cells.count > CELLS_MOST || b->nodes.count > CELLS_MOST || b->work > CELLS_WORK_MOST || bytes > CELLS_BYTES_MOST;
 }
 
@@ -276,24 +276,24 @@ static cells_status task_run(split *s, const split_task *t)
     return plane == BSP_NONE ? cell_make(s, t) : node_make(s, t, plane);
 }
 
-cells_status cells_split(cells_build *b, cells_list *pieces)
+cells_status cells_split(cells_build *b, bsp_vector *pieces)
 {
-    split s = {.b = b, .stack = *pieces, .tasks = cells_list_make(b->host, sizeof(split_task))};
-    for (int side = 0; side < 2; side++) s.parts[side] = cells_list_make(b->host, sizeof(cells_piece));
-    *pieces = cells_list_make(b->host, sizeof(cells_piece));
-    s.seen = cells_list_make(b->host, sizeof(uint32_t));
+    split s = {.b = b, .stack = *pieces, .tasks = vector_make(b->host, sizeof(split_task))};
+    for (int side = 0; side < 2; side++) s.parts[side] = vector_make(b->host, sizeof(cells_piece));
+    *pieces = vector_make(b->host, sizeof(cells_piece));
+    s.seen = vector_make(b->host, sizeof(uint32_t));
     const split_task root = {0, s.stack.count, BSP_NONE, 0, 0};
-    uint32_t *seen = cells_list_push(&s.seen, b->planes.count);
+    uint32_t *seen = vector_push(&s.seen, b->planes.count);
     if (seen) memset(seen, 0, b->planes.count * sizeof *seen);
-    const int is_ready = (seen || !b->planes.count) && cells_list_reserve(&s.stack, 1) && cells_list_add(&s.tasks, &root);
+    const int is_ready = (seen || !b->planes.count) && vector_reserve(&s.stack, 1) && vector_add(&s.tasks, &root);
     cells_status status = is_ready ? CELLS_FINE : CELLS_NO_MEMORY;
     while (s.tasks.count > 0 && status == CELLS_FINE) {
         const split_task t = ((const split_task *)s.tasks.items)[--s.tasks.count];
         status = task_run(&s, &t);
     }
-    cells_list_free(&s.stack);
-    cells_list_free(&s.tasks);
-    cells_list_free(&s.seen);
-    for (int side = 0; side < 2; side++) cells_list_free(&s.parts[side]);
+    vector_free(&s.stack);
+    vector_free(&s.tasks);
+    vector_free(&s.seen);
+    for (int side = 0; side < 2; side++) vector_free(&s.parts[side]);
     return status;
 }

@@ -13,9 +13,9 @@ typedef struct touch { uint32_t cell; int is_apart; bsp_entry entry; } touch; //
 
 typedef struct touching {
     cells_build *b;
-    cells_list stack, found;      // part, touch
-    cells_list starts, ways;      // uint32_t: ways[starts[c] .. starts[c + 1]) are the cell's interfaces
-    cells_list seen, fan;         // uint32_t: by cell, the turn that it was come to; cells around a point
+    bsp_vector stack, found;      // part, touch
+    bsp_vector starts, ways;      // uint32_t: ways[starts[c] .. starts[c + 1]) are the cell's interfaces
+    bsp_vector seen, fan;         // uint32_t: by cell, the turn that it was come to; cells around a point
     uint64_t bytes;               // that the found ones take, here and in the flow's index
     uint32_t turn;
 } touching;
@@ -27,14 +27,14 @@ static cells_status side_add(touching *t, const part *p, const bsp_node *node, i
     const bsp_plane *by = cells_plane(b, node->plane);
     const double sign = side ? -1 : 1;
     const uint32_t room = 2 * p->point_count; // see cull_polygon_clip
-    cull_point *to = cells_list_reserve(&b->points, room);
+    cull_point *to = vector_reserve(&b->points, room);
     if (!to) return CELLS_NO_MEMORY;
     const cull_cut cut = {sign * by->normal[0], sign * by->normal[1], sign * by->normal[2], sign * by->offset + 2 * b->slack};
     const part made = {node->child[side], b->points.count,
                        cull_polygon_clip((const cull_point *)b->points.items + p->first_point, p->point_count, cut, to, room)};
     if (made.point_count < 3) return CELLS_FINE;
     b->points.count += made.point_count;
-    return cells_list_add(&t->stack, &made) ? CELLS_FINE : CELLS_NO_MEMORY;
+    return vector_add(&t->stack, &made) ? CELLS_FINE : CELLS_NO_MEMORY;
 }
 
 static cells_status node_pass(touching *t, const part *p)
@@ -70,7 +70,7 @@ static cells_status ways_make(touching *t)
     const cells_build *b = t->b;
     const cells_interface *found = b->interfaces.items;
     const uint32_t cells = b->cells.count, count = b->interfaces.count;
-    uint32_t *starts = cells_list_push(&t->starts, cells + 1), *ways = cells_list_push(&t->ways, 2 * count), *seen = cells_list_push(&t->seen, cells);
+    uint32_t *starts = vector_push(&t->starts, cells + 1), *ways = vector_push(&t->ways, 2 * count), *seen = vector_push(&t->seen, cells);
     if (!starts || !seen || (!ways && count)) return CELLS_NO_MEMORY;
     memset(starts, 0, (cells + (size_t)1) * sizeof *starts);
     memset(seen, 0, cells * sizeof *seen);
@@ -110,7 +110,7 @@ static cells_status fan_grow(touching *t, uint32_t from, cull_point at)
         const uint32_t side = way->cells[1] == from, to = way->cells[!side];
         if (!(way->open >> side & 1) || seen[to] == t->turn || !holds(b, way, at)) continue;
         seen[to] = t->turn;
-        if (!cells_list_add(&t->fan, &to)) return CELLS_NO_MEMORY;
+        if (!vector_add(&t->fan, &to)) return CELLS_NO_MEMORY;
     }
     b->work += (starts[from + 1] - starts[from]) / 8; // in doubles
     return CELLS_FINE;
@@ -126,7 +126,7 @@ static cells_status is_joined(touching *t, uint32_t cell, uint32_t own, cull_poi
     seen[cell] = t->turn;
     *out = 0;
     if (cells_root(t->b, cell) != cells_root(t->b, own)) return CELLS_FINE;
-    if (!cells_list_add(&t->fan, &cell)) return CELLS_NO_MEMORY;
+    if (!vector_add(&t->fan, &cell)) return CELLS_NO_MEMORY;
     for (uint32_t i = 0; i < t->fan.count && seen[own] != t->turn && status == CELLS_FINE; i++) status = fan_grow(t, ((const uint32_t *)t->fan.items)[i], at);
     *out = seen[own] == t->turn;
     return status;
@@ -147,7 +147,7 @@ static cells_status cell_reach(touching *t, const part *p, uint32_t own, const b
     const cells_status status = is_joined(t, cell, own, middle, &joined);
     const touch made = {cell, !joined, *e};
     t->bytes += sizeof made + sizeof *e + 4 * (16 + 3 * (uint64_t)e->point_count);
-    return status != CELLS_FINE ? status : cells_list_add(&t->found, &made) ? CELLS_FINE : CELLS_NO_MEMORY;
+    return status != CELLS_FINE ? status : vector_add(&t->found, &made) ? CELLS_FINE : CELLS_NO_MEMORY;
 }
 
 // ---- Pieces ----
@@ -156,11 +156,11 @@ static cells_status piece_sink(touching *t, uint32_t own, const bsp_entry *e)
 {
     cells_build *b = t->b;
     const uint32_t mark = b->points.count;
-    cull_point *to = cells_list_push(&b->points, e->point_count);
+    cull_point *to = vector_push(&b->points, e->point_count);
     if (!to) return CELLS_NO_MEMORY;
     memcpy(to, (const cull_point *)b->entry_points.items + e->first_point, e->point_count * sizeof *to);
     const part whole = {b->nodes.count ? 0 : BSP_LEAF, mark, e->point_count};
-    cells_status status = cells_list_add(&t->stack, &whole) ? CELLS_FINE : CELLS_NO_MEMORY;
+    cells_status status = vector_add(&t->stack, &whole) ? CELLS_FINE : CELLS_NO_MEMORY;
     while (t->stack.count > 0 && status == CELLS_FINE) {
         const part p = ((const part *)t->stack.items)[--t->stack.count];
         b->points.count = p.first_point + p.point_count; // those behind it belong to parts that are done
@@ -192,7 +192,7 @@ static cells_status found_file(touching *t)
     const touch *found = t->found.items;
     bsp_cell *cells = b->cells.items;
     const uint32_t first = b->entries.count;
-    bsp_entry *to = cells_list_push(&b->entries, t->found.count);
+    bsp_entry *to = vector_push(&b->entries, t->found.count);
     if (!to) return t->found.count ? CELLS_NO_MEMORY : CELLS_FINE;
     for (uint32_t i = 0; i < t->found.count; i++) cells[found[i].cell].touching_count++;
     for (uint32_t i = 0, total = 0; i < b->cells.count; i++) {
@@ -212,14 +212,14 @@ static cells_status found_file(touching *t)
 
 cells_status cells_find_touching(cells_build *b)
 {
-    touching t = {.b = b, .stack = cells_list_make(b->host, sizeof(part)), .found = cells_list_make(b->host, sizeof(touch)), .turn = 0};
-    cells_list *const numbers[] = {&t.starts, &t.ways, &t.seen, &t.fan};
-    for (int i = 0; i < 4; i++) *numbers[i] = cells_list_make(b->host, sizeof(uint32_t));
+    touching t = {.b = b, .stack = vector_make(b->host, sizeof(part)), .found = vector_make(b->host, sizeof(touch)), .turn = 0};
+    bsp_vector *const numbers[] = {&t.starts, &t.ways, &t.seen, &t.fan};
+    for (int i = 0; i < 4; i++) *numbers[i] = vector_make(b->host, sizeof(uint32_t));
     cells_status status = ways_make(&t);
     if (status == CELLS_FINE) status = pieces_sink(&t);
     if (status == CELLS_FINE) status = found_file(&t);
-    cells_list_free(&t.stack);
-    cells_list_free(&t.found);
-    for (int i = 0; i < 4; i++) cells_list_free(numbers[i]);
+    vector_free(&t.stack);
+    vector_free(&t.found);
+    for (int i = 0; i < 4; i++) vector_free(numbers[i]);
     return status;
 }

@@ -21,7 +21,7 @@ static const uint64_t CONVEX_TESTS_MOST = 1u << 26;  // tests to learn that a se
 cull_result chooser_make(const cull_host *host, const piece_set *set, bsp_wish wish, chooser *out)
 {
     int failed = 0;
-    chooser c = {.set = set, .wish = wish, .candidates = vector_make(sizeof(plane_candidate)), .plane_count = set->table->planes.count};
+    chooser c = {.set = set, .wish = wish, .candidates = vector_make(host, sizeof(plane_candidate)), .plane_count = set->table->planes.count};
     c.effort_most = (uint64_t)EFFORT_A_PIECE * set->pieces.count;
     c.places = array_alloc(host, c.plane_count, sizeof *c.places, &failed);
     if (failed) return CULL_ERR_MEMORY;
@@ -32,7 +32,7 @@ cull_result chooser_make(const cull_host *host, const piece_set *set, bsp_wish w
 
 void chooser_free(const cull_host *host, chooser *c)
 {
-    vector_free(host, &c->candidates);
+    vector_free(&c->candidates);
     array_free(host, c->places, c->plane_count, sizeof *c->places);
     c->places = NULL;
 }
@@ -51,24 +51,24 @@ static uint32_t plane_undirected(const chooser *c, uint32_t plane)
 }
 
 // The candidate of the plane, made where it is new; NULL without memory.
-static plane_candidate *candidate_of(const cull_host *host, chooser *c, uint32_t plane, uint32_t order)
+static plane_candidate *candidate_of(chooser *c, uint32_t plane, uint32_t order)
 {
     uint32_t *place = &c->places[plane_undirected(c, plane)];
     if (*place) return candidate_at(c, *place - 1);
-    plane_candidate *made = vector_push(host, &c->candidates, 1);
+    plane_candidate *made = vector_push(&c->candidates, 1);
     if (!made) return NULL;
     *made = (plane_candidate){.plane = plane, .order = order};
     *place = c->candidates.count;
     return made;
 }
 
-static int candidates_collect(const cull_host *host, chooser *c, const uint32_t *pieces, uint32_t count)
+static int candidates_collect(chooser *c, const uint32_t *pieces, uint32_t count)
 {
     int is_whole = 1;
     c->candidates.count = 0;
     for (uint32_t i = 0; i < count && is_whole; i++) {
         const bsp_piece *piece = piece_at(c->set, pieces[i]);
-        plane_candidate *of = candidate_of(host, c, piece->plane, i);
+        plane_candidate *of = candidate_of(c, piece->plane, i);
         if (of) of->area += piece->area;
         is_whole = of != NULL;
     }
@@ -254,9 +254,9 @@ static choice first_dividing(chooser *c, const uint32_t *pieces, uint32_t count,
     return CHOICE_CONVEX;
 }
 
-choice chooser_choose(const cull_host *host, chooser *c, const uint32_t *pieces, uint32_t count, uint32_t *plane)
+choice chooser_choose(chooser *c, const uint32_t *pieces, uint32_t count, uint32_t *plane)
 {
-    if (!candidates_collect(host, c, pieces, count)) return CHOICE_MEMORY;
+    if (!candidates_collect(c, pieces, count)) return CHOICE_MEMORY;
     if (c->wish.choose == BSP_FIRST) {
         const choice made = first_dividing(c, pieces, count, 0, plane);
         if (made == CHOICE_PLANE && c->wish.split == BSP_SPLIT_NODES) *plane = candidate_at(c, 0)->plane; // it takes its own pieces out

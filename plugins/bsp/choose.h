@@ -28,6 +28,6 @@ cull_result chooser_make(const cull_host *host, const piece_set *set, bsp_wish w
 void chooser_free(const cull_host *host, chooser *c);
 
 typedef enum choice { CHOICE_MEMORY, CHOICE_PLANE, CHOICE_CONVEX, CHOICE_GAVE_UP } choice; // gave up: too many planes to hold it against
-choice chooser_choose(const cull_host *host, chooser *c, const uint32_t *pieces, uint32_t count, uint32_t *plane);
+choice chooser_choose(chooser *c, const uint32_t *pieces, uint32_t count, uint32_t *plane);
 
 #endif

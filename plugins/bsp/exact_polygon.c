@@ -4,14 +4,14 @@
 
 exact_pool exact_pool_make(const cull_host *host, const exact_plane *planes)
 {
-    const exact_pool pool = {planes, cells_list_make(host, sizeof(exact_edge)), cells_list_make(host, sizeof(int8_t))};
+    const exact_pool pool = {planes, vector_make(host, sizeof(exact_edge)), vector_make(host, sizeof(int8_t))};
     return pool;
 }
 
 void exact_pool_free(exact_pool *pool)
 {
-    cells_list_free(&pool->edges);
-    cells_list_free(&pool->signs);
+    vector_free(&pool->edges);
+    vector_free(&pool->signs);
 }
 
 // ---- Which planes are the same ----
@@ -95,7 +95,7 @@ int exact_polygon_whole(exact_pool *pool, const uint32_t box[6], uint32_t plane,
         if (cull_size(n[i]) > cull_size(n[axis])) axis = i;
     const int u = (axis + 1) % 3, v = (axis + 2) % 3; // counterclockwise seen against +axis: low v, high u, high v, low u
     const uint32_t sides[4] = {box[2 * v], box[2 * u + 1], box[2 * v + 1], box[2 * u]};
-    exact_edge *edges = cells_list_push(&pool->edges, 4);
+    exact_edge *edges = vector_push(&pool->edges, 4);
     if (!edges) return 0;
     out->plane = plane;
     out->first = pool->edges.count - 4;
@@ -113,7 +113,7 @@ int exact_polygon_place(exact_pool *pool, const exact_polygon *p, uint32_t by, e
 {
     unsigned place = EXACT_ON;
     pool->signs.count = 0;
-    int8_t *signs = cells_list_push(&pool->signs, p->count);
+    int8_t *signs = vector_push(&pool->signs, p->count);
     if (!signs) return 0;
     const exact_edge *edges = exact_edges(pool, p);
     for (uint32_t i = 0; i < p->count; i++) {
@@ -159,7 +159,7 @@ int exact_polygon_cut(exact_pool *pool, const exact_polygon *p, uint32_t by, exa
 {
     const uint32_t room = p->count + 2, base = pool->edges.count;
     const exact_polygon whole = *p;
-    if (room > UINT32_MAX / 2 || !cells_list_reserve(&pool->edges, 2 * room)) return 0;
+    if (room > UINT32_MAX / 2 || !vector_reserve(&pool->edges, 2 * room)) return 0;
     exact_edge *all = pool->edges.items, *to = all + base;
     const exact_edge *from = all + whole.first;
     cut_state c = {.signs = pool->signs.items, .count = whole.count, .by = by};

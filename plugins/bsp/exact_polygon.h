@@ -7,7 +7,7 @@
 #ifndef PORTCULLIS_BSP_EXACT_POLYGON_H
 #define PORTCULLIS_BSP_EXACT_POLYGON_H
 
-#include "cells_list.h"
+#include "vector.h"
 
 #include <portcullis/exact.h>
 
@@ -27,8 +27,8 @@ typedef struct exact_polygon { uint32_t plane, first, count; } exact_polygon; //
 
 typedef struct exact_pool {
     const exact_plane *planes;
-    cells_list edges; // exact_edge
-    cells_list signs; // int8_t, of the polygon that was last placed
+    bsp_vector edges; // exact_edge
+    bsp_vector signs; // int8_t, of the polygon that was last placed
 } exact_pool;
 
 typedef enum exact_place { // of a polygon against a plane

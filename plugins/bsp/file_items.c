@@ -22,30 +22,21 @@ static unsigned box_sides(const bsp_plane *plane, const cull_box *box, double sl
     return sides ? sides : 3u;
 }
 
-static int push_number(const cull_host *host, bsp_vector *v, uint32_t number)
-{
-    uint32_t *to = vector_push(host, v, 1);
-    if (to) *to = number;
-    return to != NULL;
-}
-
 static int file_box(tree_maker *m, uint32_t item, bsp_vector *ways)
 {
     const cull_box box = cull_box_at(&m->zone->boxes, item);
     ways->count = 0;
-    if (!push_number(m->host, ways, m->nodes.count ? 0 : BSP_LEAF)) return 0;
+    if (!vector_add(ways, &(uint32_t){m->nodes.count ? 0 : BSP_LEAF})) return 0;
     while (ways->count) {
         const uint32_t at = ((const uint32_t *)ways->items)[--ways->count];
         if (at & BSP_LEAF) {
-            tree_filing *to = vector_push(m->host, &m->filings, 1);
-            if (!to) return 0;
-            *to = (tree_filing){at, item, BSP_NONE};
+            if (!vector_add(&m->filings, &(tree_filing){at, item, BSP_NONE})) return 0;
             continue;
         }
         const bsp_node *node = (const bsp_node *)m->nodes.items + at;
         const unsigned sides = box_sides(plane_at(&m->table, node->plane), &box, m->table.slack);
         for (int side = 1; side >= 0; side--)
-            if (sides >> side & 1u && !push_number(m->host, ways, node->child[side])) return 0;
+            if (sides >> side & 1u && !vector_add(ways, &node->child[side])) return 0;
     }
     return 1;
 }
@@ -53,13 +44,13 @@ static int file_box(tree_maker *m, uint32_t item, bsp_vector *ways)
 cull_result tree_file_boxes(tree_maker *m)
 {
     const uint64_t most = (uint64_t)FILINGS_AN_ITEM * m->zone->item_count + FILINGS_LEAST;
-    bsp_vector ways = vector_make(sizeof(uint32_t));
+    bsp_vector ways = vector_make(m->host, sizeof(uint32_t));
     cull_result result = CULL_OK;
     for (uint32_t i = 0; i < m->zone->item_count && result == CULL_OK; i++) {
         if (m->table.wall_planes[i] != BSP_NONE) continue;
         if (!file_box(m, i, &ways)) result = CULL_ERR_MEMORY;
         else if (m->filings.count - m->piece_filings > most) result = CULL_ERR_ZONE;
     }
-    vector_free(m->host, &ways);
+    vector_free(&ways);
     return result;
 }

@@ -12,8 +12,8 @@
 #include <portcullis/plane.h>
 
 enum {
-    FLOW_POINTS = 62,        // of an opening or piece; one of more is taken as seen whole
     FLOW_WINDOWS = 16,       // of one cell, cells=exact; one more and two become their hull
+    FLOW_HULL_WINDOWS = 4,   // the same, cells=hull
     FLOW_HULL_BLOCKS = 1024, // windows of cells that wait, cells=hull
     FLOW_EXACT_BLOCKS = 4096,
     FLOW_PASSES = 4,         // see flow.c
@@ -59,6 +59,7 @@ typedef struct flow {
 typedef struct flow_shape {
     double x[FLOW_POINTS + 2], y[FLOW_POINTS + 2], z[FLOW_POINTS + 2]; // the first point stands behind the last once more
     uint32_t count;
+    uint32_t is_bent;
     double distance; // of the eye: at most that to any point of it, by its ball
     double size;     // no coordinate is larger
 } flow_shape;
@@ -79,6 +80,8 @@ double flow_rounding(const flow *f, double size); // of a line's value, for a po
 
 // A window's rectangle made ready: sides that a ball may be outside of.
 typedef struct flow_sides { window_bounds bounds; double norms[4]; } flow_sides;
+// A cell's turn: its windows, the sides around all, and where they are more than one those of each.
+typedef struct flow_visit { const window *windows[FLOW_WINDOWS]; uint32_t count; flow_sides sides, each[FLOW_WINDOWS]; } flow_visit;
 flow_sides flow_sides_of(window_bounds bounds);
 // With lines moved out by `tangents` and by slack seen from the ball's distance. The eye is `height` above its plane. 0 where it is near.
 int flow_ball_is_outside(const flow *f, const flow_sides *s, const flow_ball *ball, double height, double tangents);
@@ -104,7 +107,7 @@ void flow_exits_mark(flow *f); // cells at portals, before anything flows
 void flow_exits_note(flow *f, uint32_t cell, const window *const *windows, uint32_t window_count); // of a cell that is being visited
 
 typedef enum portal_way { PORTAL_IN, PORTAL_OUT } portal_way; // as the rays go through it
-window_fate flow_through_portal(const flow *f, const cull_portal *p, portal_way way, const window *w, window *out);
+window_fate flow_through_stand(const flow *f, const cull_portal *p, const bsp_stand *stand, portal_way way, const window *w, window *out);
 int flow_axes(const cull_view *view, double axes[3][3]); // right, up, forward. 0: forward is no direction
 // Starts all volumes. 0: this view is none for windows, see bsp_flow.
 int flow_start(flow *f);
@@ -112,6 +115,6 @@ int flow_start(flow *f);
 void flow_start_again(flow *f);
 
 // Marks the items of the cell that show in one of the windows; their words start at `face`.
-void flow_items(flow *f, const flow_cell *cell, const flow_word *face, const window *const *windows, uint32_t window_count);
+void flow_items(flow *f, const flow_cell *cell, const flow_word *face, const flow_visit *v);
 
 #endif

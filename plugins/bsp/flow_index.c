@@ -1,6 +1,9 @@
 // See flow_index.h.
 // SPDX-License-Identifier: MIT
 #include "flow_index.h"
+#include "loop_bent.h"
+
+#include <portcullis/face.h>
 
 #include <float.h>
 #include <math.h>
@@ -53,7 +56,22 @@ static flow_word *ball_write(const flow_word *points, uint32_t count, flow_word 
     return to + 4;
 }
 
-static flow_word *face_write(const face_source *s, flow_word *to)
+static cull_vec3 corner_at(const flow_word *points, uint32_t count, uint32_t i)
+{
+    return (cull_vec3){points[i].f, points[count + i].f, points[2 * count + i].f};
+}
+
+// One of more corners than the flow takes is seen whole anyhow.
+static uint32_t bent_bit(const flow_word *points, uint32_t count, const flow_word *plane, double bent_m)
+{
+    cull_vec3 loop[FLOW_POINTS];
+    const double normal[3] = {(double)plane[0].f, (double)plane[1].f, (double)plane[2].f};
+    if (count > FLOW_POINTS) return 0;
+    for (uint32_t i = 0; i < count; i++) loop[i] = corner_at(points, count, i);
+    return loop_is_bent(loop, count, normal, bent_m) ? FACE_BENT : 0;
+}
+
+static flow_word *face_write(const face_source *s, double bent_m, flow_word *to)
 {
     flow_word *points = to + FACE_HEAD;
     for (uint32_t i = 0; i < s->count; i++) {
@@ -65,7 +83,7 @@ static flow_word *face_write(const face_source *s, flow_word *to)
     plane_write(s, to);
     ball_write(points, s->count, to + FACE_BALL);
     to[FACE_WHO].u = s->who;
-    to[FACE_BITS].u = s->count | s->bits;
+    to[FACE_BITS].u = s->count | s->bits | bent_bit(points, s->count, to, bent_m);
     return points + 3 * (size_t)s->count;
 }
 
@@ -85,11 +103,29 @@ typedef struct packing {
     const cull_zone *zone;
     const uint32_t *order;
     const bsp_cells_data *cells;
+    double graze;   // metres, see flow.h: an eye that far behind a wall's plane sees no front
+    double bent_m;  // that corners may stand outside of an edge's line
 } packing;
 
 static uint32_t zone_item(const packing *p, uint32_t place)
 {
     return p->order ? p->order[place] : place;
+}
+
+// 1: no eye that stands more than `graze` behind the wall's plane sees the front of a triangle that is drawn for it. Rounding turns a
+// sliver's front by so much that eyes centimetres behind see it: such a wall counts as two-sided here, and the walk drops what it can.
+static int is_one_sided(const packing *p, uint32_t item)
+{
+    const cull_zone *zone = p->zone;
+    if (zone->items[item].flags & CULL_ITEM_TWO_SIDED) return 0;
+    if (!zone->walls || zone->walls[item].vertex_count == 0) return 1; // pieces of none
+    const cull_plane *plane = &zone->planes[zone->walls[item].plane];
+    const double sizes = (fabs((double)plane->normal.x) + fabs((double)plane->normal.y)) + fabs((double)plane->normal.z);
+    double offset, turn;
+    cull_wall_doubt(zone, &zone->items[item], plane, &offset, &turn);
+    offset -= CULL_FACE_ROUNDING * fabs((double)plane->offset); // this and the next are for tests in float, which the flow makes in double
+    turn -= CULL_FACE_ROUNDING * sizes;
+    return turn * (double)zone->radius + offset <= p->graze;
 }
 
 static flow_word *entry_write(const packing *p, const bsp_entry *e, int is_behind, flow_word *to)
@@ -98,15 +134,15 @@ static flow_word *entry_write(const packing *p, const bsp_entry *e, int is_behin
     if (e->point_count == 0) return box_write(cull_box_at(&p->zone->boxes, item), e->item, to);
     face_source s = {.plane = &p->cells->planes[e->plane], .points = p->cells->entry_points + e->first_point, .count = e->point_count, .who = e->item};
     s.is_behind = s.is_turned = is_behind;
-    s.bits = (is_behind ? FACE_BACK : 0) | (p->zone->items[item].flags & CULL_ITEM_TWO_SIDED ? 0 : FACE_ONE_SIDED);
-    return face_write(&s, to);
+    s.bits = (is_behind ? FACE_BACK : 0) | (is_one_sided(p, item) ? FACE_ONE_SIDED : 0);
+    return face_write(&s, p->bent_m, to);
 }
 
 static flow_word *opening_write(const packing *p, const bsp_opening *o, flow_word *to)
 {
     face_source s = {.plane = &p->cells->planes[o->plane], .points = p->cells->opening_points + o->first_point, .count = o->point_count, .who = o->to};
     s.is_behind = o->side == 1;
-    return face_write(&s, to);
+    return face_write(&s, p->bent_m, to);
 }
 
 static size_t words_of(const bsp_cells_data *c)
@@ -150,11 +186,11 @@ static void cells_write(const packing *p, bsp_flow_index *out)
 
 cull_result bsp_flow_build(const cull_host *host, const cull_zone *zone, const uint32_t *order, const bsp_cells_data *cells, bsp_flow_index *out)
 {
-    const packing p = {zone, order, cells};
     bsp_flow_index made = {.word_count = words_of(cells), .node_count = cells->node_count, .cell_count = cells->cell_count};
     *out = (bsp_flow_index){.slack = 0};
     if (cells->cell_count == 0) return CULL_OK;
-    made.slack = cells->slack + 0x1p-22 * (double)zone->radius; // points: sqrt(3) 2^-24, planes: (sqrt(3) + 1) 2^-24 of it
+    const double rounding = 0x1p-22 * (double)zone->radius; // points: sqrt(3) 2^-24, planes: (sqrt(3) + 1) 2^-24 of it
+    made.slack = cells->slack + 2 * rounding;
     made.nodes = host->alloc(host, (made.node_count + (size_t)1) * sizeof *made.nodes, 64);
     made.cells = host->alloc(host, made.cell_count * sizeof *made.cells, 64);
     made.words = host->alloc(host, (made.word_count + 1) * sizeof *made.words, 64);
@@ -162,6 +198,7 @@ cull_result bsp_flow_build(const cull_host *host, const cull_zone *zone, const u
         bsp_flow_free(host, &made);
         return CULL_ERR_MEMORY;
     }
+    const packing p = {zone, order, cells, 2 * made.slack, rounding};
     nodes_write(cells, made.nodes);
     cells_write(&p, &made);
     *out = made;

@@ -5,10 +5,10 @@
 // of a polygon that reaches behind the eye the window's cut by its edges says so. A piece is drawn up to `slack` off its place, so
 // edges move out by that.
 #include "flow.h"
+#include "pairs.h"
 
 typedef struct flow_sight { // a window made ready
     const window *w;
-    flow_sides sides;
     window_line edges[WINDOW_POINTS];
     double slacks[WINDOW_POINTS]; // by which a point that is drawn may lie outside the edge: its value there
 } flow_sight;
@@ -16,7 +16,6 @@ typedef struct flow_sight { // a window made ready
 static void sight_make(const flow *f, const window *w, flow_sight *out)
 {
     out->w = w;
-    out->sides = flow_sides_of(w->bounds);
     window_edges(w, out->edges);
     for (uint32_t i = 0; i < w->count; i++)
         out->slacks[i] = f->slack * ((fabs(out->edges[i].a) + fabs(out->edges[i].b)) + fabs(out->edges[i].c));
@@ -24,25 +23,23 @@ static void sight_make(const flow *f, const window *w, flow_sight *out)
 
 typedef enum sight_fate { SIGHT_OUTSIDE, SIGHT_INSIDE, SIGHT_UNKNOWN } sight_fate;
 
-// By the window's edges: all corners outside one, or one corner inside all.
+// By the window's edges: all corners outside one, or one corner inside all. Of an odd count the first corner is taken once more.
 static sight_fate window_parts(const flow_sight *s, const flow_shape *shape)
 {
-    double within[FLOW_POINTS];
-    for (uint32_t k = 0; k < shape->count; k++) within[k] = 1e300;
+    const pair zero = pair_of(0);
+    uint64_t inside = pair_bits(shape->count);
     for (uint32_t i = 0; i < s->w->count; i++) {
-        const window_line l = s->edges[i];
-        const double more = s->slacks[i];
-        int some = 0;
-        for (uint32_t k = 0; k < shape->count; k++) {
-            const double at = ((l.a * shape->x[k] + l.b * shape->y[k]) + l.c * shape->z[k]) + more;
-            some |= at > 0;
-            within[k] = at < within[k] ? at : within[k];
+        const pair a = pair_of(s->edges[i].a), b = pair_of(s->edges[i].b), c = pair_of(s->edges[i].c), more = pair_of(s->slacks[i]);
+        uint64_t within = 0;
+        for (uint32_t k = 0; k < shape->count; k += PAIR) {
+            const pair sum = pair_add(pair_mul(a, pair_load(shape->x + k)), pair_mul(b, pair_load(shape->y + k)));
+            const pair at = pair_add(pair_add(sum, pair_mul(c, pair_load(shape->z + k))), more);
+            within |= (uint64_t)pair_below(zero, at) << k;
         }
-        if (!some) return SIGHT_OUTSIDE;
+        if (!within) return SIGHT_OUTSIDE;
+        inside &= within;
     }
-    for (uint32_t k = 0; k < shape->count; k++)
-        if (within[k] > 0) return SIGHT_INSIDE;
-    return SIGHT_UNKNOWN;
+    return inside ? SIGHT_INSIDE : SIGHT_UNKNOWN;
 }
 
 static int reaches_behind(const flow_shape *shape)
@@ -63,29 +60,20 @@ static sight_fate shape_parts(const flow *f, const window *w, const flow_shape *
     for (uint32_t i = 0; i < shape->count; i++) {
         const window_line l = lines[i];
         if (window_line_least(l, w->bounds) > 0) continue;
-        double most = -1;
-        for (uint32_t k = 0; k < w->count; k++) {
-            const double at = (l.a * w->u[k] + l.b * w->v[k]) + l.c;
-            most = at > most ? at : most;
-        }
-        if (most <= 0) return SIGHT_OUTSIDE;
+        if (window_is_outside(w, l)) return SIGHT_OUTSIDE;
     }
     window left;
     return reaches_behind(shape) && window_cut(w, lines, shape->count, &left) == WINDOW_GONE ? SIGHT_OUTSIDE : SIGHT_INSIDE;
 }
 
-// Windows made ready: the first is kept, for most cells have one.
-typedef struct flow_sights { const window *const *windows; uint32_t count, ready; flow_sight first; } flow_sights;
+// Windows made ready, each where it is first asked for.
+typedef struct flow_sights { const flow_visit *v; uint32_t ready; flow_sight all[FLOW_WINDOWS]; } flow_sights;
 
-static const flow_sight *sight_get(const flow *f, flow_sights *sights, uint32_t i, flow_sight *other)
+static const flow_sight *sight_get(const flow *f, flow_sights *sights, uint32_t i)
 {
-    if (i > 0) {
-        sight_make(f, sights->windows[i], other);
-        return other;
-    }
-    if (!sights->ready) sight_make(f, sights->windows[0], &sights->first);
-    sights->ready = 1;
-    return &sights->first;
+    if (!(sights->ready >> i & 1)) sight_make(f, sights->v->windows[i], &sights->all[i]);
+    sights->ready |= 1u << i;
+    return &sights->all[i];
 }
 
 static int shape_shows(const flow *f, const flow_sight *s, const flow_shape *shape, double height)
@@ -118,12 +106,11 @@ static int box_shows_in_any(const flow *f, flow_sights *sights, const flow_word 
         const int axis = k / 2, is_high = k % 2;
         const double at = (double)box[(is_high ? FACE_BALL : FACE_PLANE) + axis].f, height = is_high ? f->eye[axis] - at : at - f->eye[axis];
         flow_shape shape;
-        flow_sight other;
         if (height > f->near) is_inside = 0;
         if (height < -f->graze) continue;
         box_side(f, box, axis, is_high, &shape);
-        for (uint32_t i = 0; i < sights->count; i++)
-            if (shape_shows(f, sight_get(f, sights, i, &other), &shape, height)) return 1;
+        for (uint32_t i = 0; i < sights->v->count; i++)
+            if (shape_shows(f, sight_get(f, sights, i), &shape, height)) return 1;
     }
     return is_inside;
 }
@@ -152,25 +139,26 @@ static int piece_shows_in_any(const flow *f, flow_sights *sights, const flow_wor
     if (is_turned) height = -height;
     if ((face[FACE_BITS].u & FACE_COUNT) > FLOW_POINTS) return 1;
     const flow_ball ball = flow_ball_of(f, face);
+    if (flow_ball_is_outside(f, &sights->v->sides, &ball, height, 0)) return 0;
     flow_shape shape;
     shape.count = 0;
-    for (uint32_t i = 0; i < sights->count; i++) {
-        flow_sight other;
-        const flow_sight *s = sight_get(f, sights, i, &other);
-        if (flow_ball_is_outside(f, &s->sides, &ball, height, 0)) continue;
+    for (uint32_t i = 0; i < sights->v->count; i++) {
+        if (sights->v->count > 1 && flow_ball_is_outside(f, &sights->v->each[i], &ball, height, 0)) continue;
         if (shape.count == 0) {
             flow_shape_of(f, face, &ball, &shape);
             if (is_turned) shape_turn(&shape);
         }
-        if (shape_shows(f, s, &shape, height)) return 1;
+        if (shape_shows(f, sight_get(f, sights, i), &shape, height)) return 1;
     }
     return 0;
 }
 
-void flow_items(flow *f, const flow_cell *cell, const flow_word *face, const window *const *windows, uint32_t window_count)
+void flow_items(flow *f, const flow_cell *cell, const flow_word *face, const flow_visit *v)
 {
     uint8_t *drawn = f->q->drawn;
-    flow_sights sights = {.windows = windows, .count = window_count};
+    flow_sights sights;
+    sights.v = v;
+    sights.ready = 0;
     const uint32_t entries = cell->entry_count + (f->q->backface ? 0 : cell->edge_count);
     for (uint32_t i = 0; i < entries; i++) {
         const uint32_t item = face[FACE_WHO].u, bits = face[FACE_BITS].u, count = bits & FACE_COUNT;

@@ -3,6 +3,7 @@
 //
 // Invariant: see flow.c for the guard. A line is never moved but here.
 #include "flow.h"
+#include "pairs.h"
 
 flow_ball flow_ball_of(const flow *f, const flow_word *face)
 {
@@ -19,21 +20,28 @@ double flow_ball_distance(const flow_ball *b)
     return sqrt((b->x * b->x + b->y * b->y) + b->z * b->z) - b->radius;
 }
 
+// Along an axis, of two points.
+static pair places_along(const double axis[4], pair x, pair y, pair z)
+{
+    const pair sum = pair_add(pair_mul(pair_of(axis[0]), x), pair_mul(pair_of(axis[1]), y));
+    return pair_add(pair_add(sum, pair_mul(pair_of(axis[2]), z)), pair_of(axis[3]));
+}
+
 void flow_shape_of(const flow *f, const flow_word *face, const flow_ball *ball, flow_shape *out)
 {
     const uint32_t count = face[FACE_BITS].u & FACE_COUNT;
     const flow_word *px = face + FACE_HEAD, *py = px + count, *pz = py + count;
-    const double *r = f->axes[0], *u = f->axes[1], *w = f->axes[2];
-    for (uint32_t i = 0; i < count; i++) {
-        const double x = (double)px[i].f, y = (double)py[i].f, z = (double)pz[i].f;
-        out->x[i] = ((r[0] * x + r[1] * y) + r[2] * z) + r[3];
-        out->y[i] = ((u[0] * x + u[1] * y) + u[2] * z) + u[3];
-        out->z[i] = ((w[0] * x + w[1] * y) + w[2] * z) + w[3];
+    for (uint32_t i = 0; i < count; i += PAIR) { // the last may read the word behind it: the index has one more than it needs
+        const pair x = pair_load_floats(&px[i].f), y = pair_load_floats(&py[i].f), z = pair_load_floats(&pz[i].f);
+        pair_store(out->x + i, places_along(f->axes[0], x, y, z));
+        pair_store(out->y + i, places_along(f->axes[1], x, y, z));
+        pair_store(out->z + i, places_along(f->axes[2], x, y, z));
     }
     out->x[count] = out->x[0];
     out->y[count] = out->y[0];
     out->z[count] = out->z[0];
     out->count = count;
+    out->is_bent = (face[FACE_BITS].u & FACE_BENT) != 0;
     out->distance = flow_ball_distance(ball);
     out->size = ball->size;
 }
@@ -55,19 +63,51 @@ void flow_shape_make(const flow *f, const cull_vec3 *points, uint32_t count, flo
         out->z[i] = at[2];
     }
     out->count = count;
+    out->is_bent = 0;
     out->size = size;
     out->distance = flow_shape_distance(out);
 }
 
-void flow_shape_edges(const flow_shape *s, flow_margin margin, window_line *lines)
+// Until no corner is outside; of one beside or behind the eye a shift says nothing, and the line goes.
+static window_line line_widened(const flow_shape *s, window_line l)
 {
-    const double share = margin.share, flat = margin.tangents + margin.share, rounding = margin.rounding;
+    double out_by = 0;
+    for (uint32_t k = 0; k < s->count; k++) {
+        const double at = (l.a * s->x[k] + l.b * s->y[k]) + l.c * s->z[k];
+        if (at >= 0) continue;
+        if (!(s->z[k] > 0)) return (window_line){0, 0, 1};
+        out_by = -at / s->z[k] > out_by ? -at / s->z[k] : out_by;
+    }
+    return (window_line){l.a, l.b, l.c + out_by};
+}
+
+static void bent_edges(const flow_shape *s, flow_margin margin, window_line *lines)
+{
     for (uint32_t i = 0; i < s->count; i++) {
         const double a = s->y[i] * s->z[i + 1] - s->z[i] * s->y[i + 1], b = s->z[i] * s->x[i + 1] - s->x[i] * s->z[i + 1];
         const double c = s->x[i] * s->y[i + 1] - s->y[i] * s->x[i + 1];
-        lines[i].a = a;
-        lines[i].b = b;
-        lines[i].c = c + ((flat * (fabs(a) + fabs(b)) + share * fabs(c)) + rounding);
+        const double flat = (margin.tangents + margin.share) * (fabs(a) + fabs(b)), deep = margin.share * fabs(c);
+        lines[i] = line_widened(s, (window_line){a, b, c});
+        lines[i].c += (flat + deep) + margin.rounding;
+    }
+}
+
+void flow_shape_edges(const flow_shape *s, flow_margin margin, window_line *lines)
+{
+    if (s->is_bent) {
+        bent_edges(s, margin, lines);
+        return;
+    }
+    const pair share = pair_of(margin.share), flat = pair_of(margin.tangents + margin.share), rounding = pair_of(margin.rounding);
+    for (uint32_t i = 0; i < s->count; i += PAIR) { // of an odd count one more, that nobody reads
+        const pair x = pair_load(s->x + i), y = pair_load(s->y + i), z = pair_load(s->z + i);
+        const pair next_x = pair_load(s->x + i + 1), next_y = pair_load(s->y + i + 1), next_z = pair_load(s->z + i + 1);
+        const pair a = pair_subtract(pair_mul(y, next_z), pair_mul(z, next_y)), b = pair_subtract(pair_mul(z, next_x), pair_mul(x, next_z));
+        const pair c = pair_subtract(pair_mul(x, next_y), pair_mul(y, next_x));
+        const pair out_by = pair_add(pair_add(pair_mul(flat, pair_add(pair_size(a), pair_size(b))), pair_mul(share, pair_size(c))), rounding);
+        const pair moved = pair_add(c, out_by);
+        lines[i] = (window_line){pair_first(a), pair_first(b), pair_first(moved)};
+        lines[i + 1] = (window_line){pair_second(a), pair_second(b), pair_second(moved)};
     }
 }
 

@@ -7,8 +7,7 @@
 
 #include <string.h>
 
-static const double NEAR_LEAST = 0.0016;       // metres: rounding of eyes and vertices where the near plane is nearer still
-static const double NEAR_SHARE = 1.0 / 65536;  // of the zone's radius, as the host counts an eye to be at a portal (DESIGN.md, rule 3)
+static const double NEAR_SHARE = 1.0 / 65536; // of the zone's radius, as the host counts an eye to be at a portal (DESIGN.md, rule 3)
 
 // ---- The view ----
 
@@ -69,7 +68,6 @@ static int view_take(flow *f)
     f->guard_share = 1.7320508075688772 * CULL_GUARD_DISTANCE * (1 + 1.0 / 262144) * f->reach;
     f->guard_wide = f->guard_tangents + f->guard_share * f->reach;
     f->near = (double)view->near_distance * f->reach + f->radius * NEAR_SHARE;
-    if (f->near < NEAR_LEAST) f->near = NEAR_LEAST;
     if (f->near < 4 * f->slack) f->near = 4 * f->slack;
     f->graze = 2 * f->slack;
     f->slack_wide = f->slack < 0.5 ? f->slack * f->reach * f->reach / (1 - f->slack) : 1e9;
@@ -190,18 +188,20 @@ static int is_at_any_portal(const flow *f)
     return 0;
 }
 
-window_fate flow_through_portal(const flow *f, const cull_portal *p, portal_way way, const window *w, window *out)
+// Each stand stands for itself: of one nearer than `near` all passes; what else passes a portal in whose plane the eye all but lies is a line.
+window_fate flow_through_stand(const flow *f, const cull_portal *p, const bsp_stand *stand, portal_way way, const window *w, window *out)
 {
     flow_shape s;
     flow_gate gate;
     const double height = portal_height(f, p, way);
     if (height < -f->near) return WINDOW_GONE;
-    if (p->point_count > FLOW_POINTS) {
+    if (stand->point_count > FLOW_POINTS) {
         f->figures->limits_hit++;
         return WINDOW_SAME;
     }
-    if (is_at_portal(f, p)) return WINDOW_SAME;
-    flow_shape_make(f, p->points, p->point_count, way == PORTAL_OUT ? FLOW_AS_STORED : FLOW_REVERSED, &s);
+    flow_shape_make(f, f->cells->stand_points + stand->first_point, stand->point_count, way == PORTAL_OUT ? FLOW_AS_STORED : FLOW_REVERSED, &s);
+    s.is_bent = stand->is_bent;
+    if (fabs(height) <= f->near && s.distance <= f->near) return WINDOW_SAME;
     if (height < -f->graze) return WINDOW_GONE;
     const double normal[3] = {(double)p->plane.normal.x, (double)p->plane.normal.y, (double)p->plane.normal.z};
     if (height > f->graze) flow_gate_make(f, &s, height, &gate);
@@ -209,29 +209,41 @@ window_fate flow_through_portal(const flow *f, const cull_portal *p, portal_way 
     return window_cut(w, gate.lines, gate.count, out);
 }
 
+static void start_at_portal(flow *f, flow_when when, uint32_t portal, const window *w)
+{
+    for (uint32_t i = f->cells->portal_offsets[portal]; i < f->cells->portal_offsets[portal + 1]; i++) {
+        const bsp_stand *stand = &f->cells->stands[i];
+        window cut;
+        const window_fate fate = flow_through_stand(f, &f->q->zone->portals[portal], stand, PORTAL_IN, w, &cut);
+        if (fate != WINDOW_GONE) flow_add(f, when, stand->cell, fate == WINDOW_SAME ? w : &cut);
+    }
+}
+
 static void start_at_portals(flow *f, flow_when when, const window *w)
 {
-    for (uint32_t i = 0; i < f->cells->portal_count; i++) {
-        window cut;
-        const window_fate fate = flow_through_portal(f, &f->q->zone->portals[i], PORTAL_IN, w, &cut);
-        if (fate == WINDOW_GONE) continue;
-        for (uint32_t k = f->cells->portal_offsets[i]; k < f->cells->portal_offsets[i + 1]; k++)
-            flow_add(f, when, f->cells->portal_cells[k], fate == WINDOW_SAME ? w : &cut);
-    }
+    for (uint32_t i = 0; i < f->cells->portal_count; i++) start_at_portal(f, when, i, w);
+}
+
+// Through the portal that the volume came in through, where it tells; what is seen round a ring of zones is a volume of its own.
+static void start_at_entry(flow *f, const cull_volume *volume, const window *w)
+{
+    if (volume->entry > 0 && volume->entry <= f->cells->portal_count) start_at_portal(f, FLOW_NOW, volume->entry - 1, w);
+    else start_at_portals(f, FLOW_NOW, w);
 }
 
 // What of the window left the zone through portals. 0: nothing.
 static int leaving_find(const flow *f, const window *w, window_bounds *out)
 {
+    const bsp_cells_data *c = f->cells;
     int any = 0;
     *out = (window_bounds){WINDOW_REACH_MOST, -WINDOW_REACH_MOST, WINDOW_REACH_MOST, -WINDOW_REACH_MOST};
-    for (uint32_t i = 0; i < f->cells->portal_count; i++)
-        for (uint32_t k = f->cells->portal_offsets[i]; k < f->cells->portal_offsets[i + 1]; k++) {
-            const uint32_t cell = f->cells->portal_cells[k];
+    for (uint32_t p = 0; p < c->portal_count; p++)
+        for (uint32_t i = c->portal_offsets[p]; i < c->portal_offsets[p + 1]; i++) {
+            const bsp_stand *stand = &c->stands[i];
             window seen, cut;
-            if (!(f->states[cell] & FLOW_SEEN) || !window_bounds_touch(f->slots[0][cell].bounds, w->bounds)) continue;
-            window_set_rectangle(f->slots[0][cell].bounds, &seen);
-            const window_fate fate = flow_through_portal(f, &f->q->zone->portals[i], PORTAL_OUT, &seen, &cut);
+            if (!(f->states[stand->cell] & FLOW_SEEN) || !window_bounds_touch(f->slots[0][stand->cell].bounds, w->bounds)) continue;
+            window_set_rectangle(f->slots[0][stand->cell].bounds, &seen);
+            const window_fate fate = flow_through_stand(f, &f->q->zone->portals[p], stand, PORTAL_OUT, &seen, &cut);
             if (fate == WINDOW_GONE) continue;
             *out = window_bounds_union(*out, fate == WINDOW_SAME ? seen.bounds : cut.bounds);
             any = 1;
@@ -274,7 +286,8 @@ int flow_start(flow *f)
         if (side == VOLUME_HOLDS_EYE && !is_in_air && !is_at_portal_now && !eye_is_in_box(f)) return 0;
         if (side == VOLUME_HOLDS_EYE) start_at_eye(f, &w, !is_in_air && is_at_portal_now ? START_AIR : START_ALL);
         if (side == VOLUME_HOLDS_EYE && !is_at_portal_now && f->q->exits == BSP_EXITS_KEPT && eye_is_behind_walls(f)) exits_open(f, &w);
-        if (side == VOLUME_BEYOND_EYE || !is_in_air) start_at_portals(f, FLOW_NOW, &w);
+        if (side == VOLUME_BEYOND_EYE) start_at_entry(f, &visit->volumes[v], &w);
+        else if (!is_in_air) start_at_portals(f, FLOW_NOW, &w);
     }
     return 1;
 }

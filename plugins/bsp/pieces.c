@@ -42,11 +42,11 @@ static void piece_measure(const piece_set *set, bsp_piece *piece)
 
 // ---- From the zone ----
 
-static int wall_to_piece(const cull_host *host, const cull_zone *zone, uint32_t item, piece_set *set)
+static int wall_to_piece(const cull_zone *zone, uint32_t item, piece_set *set)
 {
     const cull_wall *wall = &zone->walls[item];
-    bsp_piece *piece = vector_push(host, &set->pieces, 1);
-    cull_point *points = piece ? vector_push(host, &set->points, wall->vertex_count) : NULL;
+    bsp_piece *piece = vector_push(&set->pieces, 1);
+    cull_point *points = piece ? vector_push(&set->points, wall->vertex_count) : NULL;
     if (!points) return 0;
     for (uint32_t i = 0; i < wall->vertex_count; i++) {
         const cull_vec3 p = zone->positions[zone->wall_vertices[wall->first_vertex + i]];
@@ -62,21 +62,21 @@ static int wall_to_piece(const cull_host *host, const cull_zone *zone, uint32_t 
 
 cull_result piece_set_make(const cull_host *host, const cull_zone *zone, const plane_table *table, piece_set *out)
 {
-    piece_set set = {table, vector_make(sizeof(bsp_piece)), vector_make(sizeof(cull_point)), vector_make(sizeof(double))};
+    piece_set set = {table, vector_make(host, sizeof(bsp_piece)), vector_make(host, sizeof(cull_point)), vector_make(host, sizeof(double))};
     for (uint32_t i = 0; i < zone->item_count; i++) {
-        if (table->wall_planes[i] == BSP_NONE || wall_to_piece(host, zone, i, &set)) continue;
-        piece_set_free(host, &set);
+        if (table->wall_planes[i] == BSP_NONE || wall_to_piece(zone, i, &set)) continue;
+        piece_set_free(&set);
         return CULL_ERR_MEMORY;
     }
     *out = set;
     return CULL_OK;
 }
 
-void piece_set_free(const cull_host *host, piece_set *set)
+void piece_set_free(piece_set *set)
 {
-    vector_free(host, &set->pieces);
-    vector_free(host, &set->points);
-    vector_free(host, &set->heights);
+    vector_free(&set->pieces);
+    vector_free(&set->points);
+    vector_free(&set->heights);
 }
 
 // ---- Against a plane ----
@@ -109,10 +109,10 @@ piece_side piece_side_of(const piece_set *set, uint32_t number, uint32_t plane_n
 
 // ---- Cutting ----
 
-static int heights_fill(const cull_host *host, piece_set *set, const bsp_piece *piece, const bsp_plane *plane)
+static int heights_fill(piece_set *set, const bsp_piece *piece, const bsp_plane *plane)
 {
     set->heights.count = 0;
-    double *heights = vector_push(host, &set->heights, piece->point_count);
+    double *heights = vector_push(&set->heights, piece->point_count);
     if (!heights) return 0;
     const cull_point *points = piece_points(set, piece);
     for (uint32_t i = 0; i < piece->point_count; i++) {
@@ -123,12 +123,12 @@ static int heights_fill(const cull_host *host, piece_set *set, const bsp_piece *
 }
 
 // One part: the points where sign * height >= 0, and the points between. The cut is always made from front to back.
-static int part_make(const cull_host *host, piece_set *set, uint32_t number, double sign, uint32_t *out)
+static int part_make(piece_set *set, uint32_t number, double sign, uint32_t *out)
 {
     const bsp_piece from = *piece_at(set, number);
     const uint32_t first = set->points.count;
-    cull_point *to = vector_push(host, &set->points, 2 * from.point_count);
-    bsp_piece *part = to ? vector_push(host, &set->pieces, 1) : NULL;
+    cull_point *to = vector_push(&set->points, 2 * from.point_count);
+    bsp_piece *part = to ? vector_push(&set->pieces, 1) : NULL;
     if (!part) return 0;
     const cull_point *points = piece_points(set, &from);
     const double *heights = set->heights.items;
@@ -148,8 +148,8 @@ static int part_make(const cull_host *host, piece_set *set, uint32_t number, dou
     return 1;
 }
 
-int piece_cut(const cull_host *host, piece_set *set, uint32_t piece, uint32_t plane, uint32_t parts[2])
+int piece_cut(piece_set *set, uint32_t piece, uint32_t plane, uint32_t parts[2])
 {
-    if (!heights_fill(host, set, piece_at(set, piece), plane_at(set->table, plane))) return 0;
-    return part_make(host, set, piece, 1, &parts[0]) && part_make(host, set, piece, -1, &parts[1]);
+    if (!heights_fill(set, piece_at(set, piece), plane_at(set->table, plane))) return 0;
+    return part_make(set, piece, 1, &parts[0]) && part_make(set, piece, -1, &parts[1]);
 }

@@ -26,11 +26,11 @@ typedef enum piece_side { PIECE_FRONT, PIECE_BACK, PIECE_ON_FRONT, PIECE_ON_BACK
 
 // All walls with a usable plane, in the zone's order. CULL_ERR_MEMORY leaves nothing.
 cull_result piece_set_make(const cull_host *host, const cull_zone *zone, const plane_table *table, piece_set *out);
-void piece_set_free(const cull_host *host, piece_set *set);
+void piece_set_free(piece_set *set);
 
 piece_side piece_side_of(const piece_set *set, uint32_t piece, uint32_t plane);
 // Of a piece that spans the plane: parts[0] in front, parts[1] behind. 0 without memory.
-int piece_cut(const cull_host *host, piece_set *set, uint32_t piece, uint32_t plane, uint32_t parts[2]);
+int piece_cut(piece_set *set, uint32_t piece, uint32_t plane, uint32_t parts[2]);
 
 static inline const bsp_piece *piece_at(const piece_set *set, uint32_t piece)
 {

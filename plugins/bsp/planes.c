@@ -66,8 +66,8 @@ static uint64_t plane_hash(const cull_wide_plane *p) // the same for the twin; F
 
 static uint32_t plane_add(plane_maker *m, const cull_wide_plane *exact, uint32_t twin)
 {
-    bsp_plane *plane = vector_push(m->host, &m->table->planes, 1);
-    uint32_t *twin_at = plane ? vector_push(m->host, &m->table->twins, 1) : NULL;
+    bsp_plane *plane = vector_push(&m->table->planes, 1);
+    uint32_t *twin_at = plane ? vector_push(&m->table->twins, 1) : NULL;
     if (!twin_at) {
         m->failed = 1;
         return BSP_NONE;
@@ -285,7 +285,7 @@ static void slots_alloc(plane_maker *m)
 
 cull_result bsp_planes_make(const cull_host *host, const cull_zone *zone, plane_table *out)
 {
-    plane_table table = {.planes = vector_make(sizeof(bsp_plane)), .twins = vector_make(sizeof(uint32_t)), .item_count = zone->item_count};
+    plane_table table = {.planes = vector_make(host, sizeof(bsp_plane)), .twins = vector_make(host, sizeof(uint32_t)), .item_count = zone->item_count};
     plane_maker m = {.host = host, .zone = zone, .table = &table, .is_exact = are_exact(zone)};
     m.radius = power_of_two_above((double)zone->radius);
     m.off_most = m.radius * OFF_SHARE_MOST;
@@ -311,8 +311,8 @@ cull_result bsp_planes_make(const cull_host *host, const cull_zone *zone, plane_
 
 void bsp_planes_free(const cull_host *host, plane_table *table)
 {
-    vector_free(host, &table->planes);
-    vector_free(host, &table->twins);
+    vector_free(&table->planes);
+    vector_free(&table->twins);
     array_free(host, table->wall_planes, table->item_count, sizeof *table->wall_planes);
     table->wall_planes = NULL;
 }

@@ -67,7 +67,7 @@ static void look_at(bsp_sight *s, const cull_view *view)
 
 static int is_same(const sight_volume *kept, const cull_volume *v)
 {
-    return kept->plane_count == v->plane_count && (!v->plane_count || memcmp(kept->planes, v->planes, v->plane_count * sizeof *v->planes) == 0);
+    return kept->plane_count == v->plane_count && kept->entry == v->entry && (!v->plane_count || memcmp(kept->planes, v->planes, v->plane_count * sizeof *v->planes) == 0);
 }
 
 static uint32_t volume_find(const bsp_sight *s, const cull_volume *v)
@@ -101,6 +101,7 @@ static void volume_keep(bsp_sight *s, const cull_volume *v)
     }
     sight_volume *kept = &s->volumes[s->volume_count];
     kept->plane_count = v->plane_count;
+    kept->entry = v->entry;
     if (v->plane_count) memcpy(kept->planes, v->planes, v->plane_count * sizeof *v->planes);
     s->current = s->volume_count++;
 }
@@ -194,10 +195,10 @@ static cull_crossing window_give(const bsp_sight *s, const sight_question *q, co
 
 cull_crossing sight_part(bsp_sight *s, const sight_question *q, cull_plane *planes, uint32_t *plane_count)
 {
-    const uint32_t *cells = s->flow.cells->portal_offsets + q->portal;
+    const uint32_t *stands = s->flow.cells->portal_offsets + q->portal;
     window rectangle;
     const window *windows[FLOW_WINDOWS];
-    if (cells[0] == cells[1]) return CULL_CROSS_SAME; // no cell knows of it
+    if (stands[0] == stands[1]) return CULL_CROSS_SAME; // no cell knows of it
     look_at(s, q->view);
     const uint32_t known = volume_find(s, q->in);
     if (known == SIGHT_VOLUMES || known != s->current) {

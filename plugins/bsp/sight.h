@@ -8,9 +8,9 @@
 
 #include "cells.h"
 
-enum { SIGHT_VOLUMES = 24 }; // kept; what comes on top is run again at select
+enum { SIGHT_VOLUMES = 40 }; // kept; what comes on top is run again at select
 
-typedef struct sight_volume { cull_plane planes[CULL_MAX_PLANES]; uint32_t plane_count; } sight_volume;
+typedef struct sight_volume { cull_plane planes[CULL_MAX_PLANES]; uint32_t plane_count, entry; } sight_volume;
 typedef struct sight_view {
     double eye[4], forward[3], pixel_tangent, reach, near_distance;
     float right[3], eye_w; // right: the picture's, which the windows' axes follow

@@ -24,11 +24,11 @@ static cull_result fail(const cull_host *host, cull_result result)
 
 static cull_result maker_fill(tree_maker *m, uint32_t depth_most)
 {
-    m->nodes = vector_make(sizeof(bsp_node));
-    m->leaves = vector_make(sizeof(bsp_leaf));
-    m->filings = vector_make(sizeof(tree_filing));
-    m->tasks = vector_make(sizeof(tree_task));
-    m->lists = m->aside[0] = m->aside[1] = vector_make(sizeof(uint32_t));
+    m->nodes = vector_make(m->host, sizeof(bsp_node));
+    m->leaves = vector_make(m->host, sizeof(bsp_leaf));
+    m->filings = vector_make(m->host, sizeof(tree_filing));
+    m->tasks = vector_make(m->host, sizeof(tree_task));
+    m->lists = m->aside[0] = m->aside[1] = vector_make(m->host, sizeof(uint32_t));
     m->depth_most = depth_most;
     cull_result result = bsp_planes_make(m->host, m->zone, &m->table);
     if (result == CULL_OK) result = piece_set_make(m->host, m->zone, &m->table, &m->set);
@@ -42,9 +42,9 @@ static cull_result maker_fill(tree_maker *m, uint32_t depth_most)
 static cull_result tree_take(tree_maker *m, bsp_tree *out)
 {
     int failed = 0;
-    out->nodes = vector_copy(m->host, &m->nodes, &failed);
-    out->leaves = vector_copy(m->host, &m->leaves, &failed);
-    out->planes = vector_copy(m->host, &m->table.planes, &failed);
+    out->nodes = vector_copy(&m->nodes, &failed);
+    out->leaves = vector_copy(&m->leaves, &failed);
+    out->planes = vector_copy(&m->table.planes, &failed);
     out->node_count = m->nodes.count;
     out->leaf_count = m->leaves.count;
     out->plane_count = m->table.planes.count;

@@ -2,41 +2,46 @@
 // SPDX-License-Identifier: MIT
 #include "vector.h"
 
-#include <string.h>
-
 enum { ALIGN = 64, CAPACITY_LEAST = 64, CAPACITY_MOST = 0x7fffffff };
 
-void *vector_push(const cull_host *host, bsp_vector *v, uint32_t count)
+int vector_grow(bsp_vector *v, uint32_t more)
 {
-    if (count > CAPACITY_MOST - v->count) return NULL;
-    if (v->count + count > v->capacity || !v->items) {
-        uint32_t capacity = v->capacity < CAPACITY_MOST / 2 ? v->capacity * 2 : CAPACITY_MOST;
-        if (capacity < v->count + count) capacity = v->count + count;
-        if (capacity < CAPACITY_LEAST) capacity = CAPACITY_LEAST;
-        void *items = host->alloc(host, (size_t)capacity * v->item_size, ALIGN);
-        if (!items) return NULL;
-        if (v->count) memcpy(items, v->items, (size_t)v->count * v->item_size);
-        if (v->items) host->free(host, v->items, (size_t)v->capacity * v->item_size);
-        v->items = items;
-        v->capacity = capacity;
-    }
-    char *at = (char *)v->items + (size_t)v->count * v->item_size;
-    v->count += count;
-    return at;
+    if (more > CAPACITY_MOST - v->count) return 0;
+    uint32_t capacity = v->capacity < CAPACITY_MOST / 2 ? v->capacity * 2 : CAPACITY_MOST;
+    if (capacity < v->count + more) capacity = v->count + more;
+    if (capacity < CAPACITY_LEAST) capacity = CAPACITY_LEAST;
+    void *items = capacity <= SIZE_MAX / v->item_size ? v->host->alloc(v->host, capacity * v->item_size, ALIGN) : NULL;
+    if (!items) return 0;
+    if (v->count) memcpy(items, v->items, v->count * v->item_size);
+    if (v->items) v->host->free(v->host, v->items, v->capacity * v->item_size);
+    v->items = items;
+    v->capacity = capacity;
+    return 1;
 }
 
-void vector_free(const cull_host *host, bsp_vector *v)
+void vector_free(bsp_vector *v)
 {
-    if (v->items) host->free(host, v->items, (size_t)v->capacity * v->item_size);
+    if (v->items) v->host->free(v->host, v->items, v->capacity * v->item_size);
     v->items = NULL;
     v->count = v->capacity = 0;
 }
 
-void *vector_copy(const cull_host *host, const bsp_vector *v, int *failed)
+void *vector_copy(const bsp_vector *v, int *failed)
 {
-    void *out = array_alloc(host, v->count, v->item_size, failed);
-    if (out) memcpy(out, v->items, (size_t)v->count * v->item_size);
+    void *out = array_alloc(v->host, v->count, v->item_size, failed);
+    if (out) memcpy(out, v->items, v->count * v->item_size);
     return out;
+}
+
+int vector_take(bsp_vector *v, void *out_items, uint32_t *out_count)
+{
+    int failed = 0;
+    void *items = vector_copy(v, &failed);
+    if (failed) return 0;
+    memcpy(out_items, &items, sizeof items);
+    *out_count = v->count;
+    vector_free(v);
+    return 1;
 }
 
 void *array_alloc(const cull_host *host, size_t count, size_t item_size, int *failed)

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "window.h"
 
+#include "pairs.h"
 #include "window_loop.h"
 
-#include <math.h>
 #include <string.h>
 
 static const double SNAP = 98304; // 1.5 * 2^16: adding it leaves 2^-36 as the last bit of |x| < 2^15
@@ -39,15 +39,29 @@ double window_area(const window *w)
     return loop_area(w->u, w->v, w->count);
 }
 
+static double lesser(pair a)
+{
+    const double x = pair_first(a), y = pair_second(a);
+    return x < y ? x : y;
+}
+
+static double greater(pair a)
+{
+    const double x = pair_first(a), y = pair_second(a);
+    return x > y ? x : y;
+}
+
+// Of 2 or more.
 static window_bounds bounds_of(const double *u, const double *v, uint32_t count)
 {
-    window_bounds b = {u[0], u[0], v[0], v[0]};
-    for (uint32_t i = 1; i < count; i++) {
-        b.u0 = u[i] < b.u0 ? u[i] : b.u0;
-        b.u1 = u[i] > b.u1 ? u[i] : b.u1;
-        b.v0 = v[i] < b.v0 ? v[i] : b.v0;
-        b.v1 = v[i] > b.v1 ? v[i] : b.v1;
+    const uint32_t last = count - PAIR;
+    pair low_u = pair_load(u + last), low_v = pair_load(v + last), high_u = low_u, high_v = low_v;
+    for (uint32_t i = 0; i < last; i += PAIR) {
+        const pair at_u = pair_load(u + i), at_v = pair_load(v + i);
+        low_u = pair_min(at_u, low_u), high_u = pair_max(at_u, high_u);
+        low_v = pair_min(at_v, low_v), high_v = pair_max(at_v, high_v);
     }
+    const window_bounds b = {lesser(low_u), greater(high_u), lesser(low_v), greater(high_v)};
     return b;
 }
 
@@ -69,6 +83,7 @@ static void loop_take(const window *w, loop *out)
 {
     out->count = w->count;
     loop_copy(w->u, w->v, w->count, out->u, out->v);
+    loop_close(out);
 }
 
 // ---- Cuts ----
@@ -108,25 +123,43 @@ static void plain_cut(const corners *in, const double *heights, uint32_t start, 
     out->count = inside;
     if (heights[last] > 0) between_add(in, heights, last, last + 1 < count ? last + 1 : 0, out);
     if (heights[start] > 0) between_add(in, heights, start, start > 0 ? start - 1 : count - 1, out);
+    int repeats = 0; // corners of a window differ from their neighbours: only the new ones may not
+    for (uint32_t i = inside - 1, k = inside; k <= out->count; i++, k++) {
+        const uint32_t at = k < out->count ? k : 0;
+        repeats |= (out->u[i] == out->u[at]) & (out->v[i] == out->v[at]);
+    }
+    if (repeats) loop_tidy(out);
+}
+
+// A bit for each corner that lies outside the line, of at most 32; none of a line that is no number. heights: room for one more.
+static uint64_t heights_find(const corners *in, window_line line, double *heights)
+{
+    const pair a = pair_of(line.a), b = pair_of(line.b), c = pair_of(line.c), zero = pair_of(0);
+    uint64_t outside = 0;
+    for (uint32_t i = 0; i < in->count; i += PAIR) {
+        const pair at = pair_add(pair_add(pair_mul(a, pair_load(in->u + i)), pair_mul(b, pair_load(in->v + i))), c);
+        pair_store(heights + i, at);
+        outside |= (uint64_t)pair_below(at, zero) << i;
+    }
+    return outside & pair_bits(in->count);
 }
 
 typedef enum cut_fate { CUT_NOTHING, CUT_SOME, CUT_ALL } cut_fate;
 
 static cut_fate loop_cut(const corners *in, window_line line, loop *out)
 {
-    double heights[LOOP_MOST];
-    uint32_t outside = 0, entries = 0, start = 0;
-    for (uint32_t i = 0; i < in->count; i++) heights[i] = (line.a * in->u[i] + line.b * in->v[i]) + line.c;
-    for (uint32_t i = 0; i < in->count; i++) outside += heights[i] < 0; // none of a line that is no number
+    double heights[WINDOW_POINTS + PAIR];
+    const uint64_t outside = heights_find(in, line, heights), all = pair_bits(in->count), before = pair_turned(outside, in->count);
+    const uint64_t enters = before & ~outside, leaves = outside & ~before;
     if (outside == 0) return CUT_NOTHING;
-    if (outside == in->count) return CUT_ALL;
-    for (uint32_t i = 0, before = in->count - 1; i < in->count; before = i++) {
-        const uint32_t enters = heights[before] < 0 && heights[i] >= 0;
-        entries += enters;
-        start += enters * i;
+    if (outside == all) return CUT_ALL;
+    if (enters & (enters - 1)) {
+        bent_cut(in, heights, out);
+        loop_tidy(out);
+        return CUT_SOME;
     }
-    if (entries == 1) plain_cut(in, heights, start, in->count - outside, out);
-    else bent_cut(in, heights, out);
+    const uint32_t start = pair_lowest(enters), end = pair_lowest(leaves);
+    plain_cut(in, heights, start, end > start ? end - start : end + in->count - start, out);
     return CUT_SOME;
 }
 
@@ -135,14 +168,14 @@ window_fate window_cut(const window *in, const window_line *lines, uint32_t line
     loop loops[2];
     corners from = {in->u, in->v, in->count};
     uint32_t to = 0;
+    for (uint32_t i = 0; i < line_count; i++)
+        if (window_line_most(lines[i], in->bounds) < 0) return WINDOW_GONE; // before any work
     for (uint32_t i = 0; i < line_count; i++) {
         if (!(window_line_least(lines[i], in->bounds) < 0)) continue; // nor does a line cut that is no number
-        if (window_line_most(lines[i], in->bounds) < 0) return WINDOW_GONE;
         if (from.count > WINDOW_POINTS) break; // nothing is cut off any more: larger, never smaller
         const cut_fate fate = loop_cut(&from, lines[i], &loops[to]);
         if (fate == CUT_ALL) return WINDOW_GONE;
         if (fate == CUT_NOTHING) continue;
-        loop_tidy(&loops[to]);
         if (loops[to].count < 3) return WINDOW_GONE;
         from = (corners){loops[to].u, loops[to].v, loops[to].count};
         to = 1 - to;
@@ -156,28 +189,36 @@ window_fate window_cut(const window *in, const window_line *lines, uint32_t line
 
 int window_contains(const window *outer, const window *inner)
 {
+    loop closed;
     if (!window_bounds_contain(outer->bounds, inner->bounds)) return 0;
-    for (uint32_t i = 0; i < outer->count; i++) {
-        const uint32_t k = i + 1 < outer->count ? i + 1 : 0;
-        const loop_point a = {outer->u[i], outer->v[i]}, b = {outer->u[k], outer->v[k]};
-        for (uint32_t j = 0; j < inner->count; j++)
-            if (loop_turn(a, b, (loop_point){inner->u[j], inner->v[j]}) < 0) return 0;
-    }
+    loop_take(outer, &closed);
+    for (uint32_t i = 0; i < inner->count; i++)
+        if (loop_sides_out(&closed, (loop_point){inner->u[i], inner->v[i]})) return 0;
     return 1;
+}
+
+int window_is_outside(const window *w, window_line line)
+{
+    const pair a = pair_of(line.a), b = pair_of(line.b), c = pair_of(line.c), zero = pair_of(0);
+    uint64_t inside = 0;
+    for (uint32_t i = 0; i < w->count; i += PAIR) {
+        const pair at = pair_add(pair_add(pair_mul(a, pair_load(w->u + i)), pair_mul(b, pair_load(w->v + i))), c);
+        inside |= (uint64_t)pair_below(zero, at) << i;
+    }
+    return !(inside & pair_bits(w->count));
 }
 
 void window_edges(const window *w, window_line lines[WINDOW_POINTS])
 {
+    const uint32_t last = w->count - PAIR;
     for (uint32_t i = 0; i < w->count; i++) {
         const uint32_t k = i + 1 < w->count ? i + 1 : 0;
-        window_line l = {w->v[i] - w->v[k], w->u[k] - w->u[i], 0};
-        double least = l.a * w->u[i] + l.b * w->v[i];
-        for (uint32_t j = 0; j < w->count; j++) {
-            const double at = l.a * w->u[j] + l.b * w->v[j];
-            least = at < least ? at : least;
-        }
-        l.c = -least;
-        lines[i] = l;
+        const window_line l = {w->v[i] - w->v[k], w->u[k] - w->u[i], 0};
+        const pair a = pair_of(l.a), b = pair_of(l.b);
+        pair least = pair_add(pair_mul(a, pair_load(w->u + last)), pair_mul(b, pair_load(w->v + last)));
+        for (uint32_t j = 0; j < last; j += PAIR)
+            least = pair_min(pair_add(pair_mul(a, pair_load(w->u + j)), pair_mul(b, pair_load(w->v + j))), least);
+        lines[i] = (window_line){l.a, l.b, -lesser(least)};
     }
 }
 
@@ -196,63 +237,88 @@ window_fate window_hull(const window *a, const window *b, window *out)
     return loop_hand_over(&hull, out);
 }
 
-static double area_of_both(const window *a, const window *b)
+// What both share, where `b` is convex.
+static double area_of_both(const window *a, const loop *b)
 {
     window_line lines[WINDOW_POINTS];
     window both;
-    window_edges(b, lines);
+    for (uint32_t i = 0; i < b->count; i++) {
+        const double du = b->u[i + 1] - b->u[i], dv = b->v[i + 1] - b->v[i];
+        lines[i] = (window_line){-dv, du, dv * b->u[i] - du * b->v[i]};
+    }
     const window_fate fate = window_cut(a, lines, b->count, &both);
     return fate == WINDOW_GONE ? 0 : window_area(fate == WINDOW_SAME ? a : &both);
 }
 
-// The corner farthest along a direction.
-static uint32_t farthest(const window *w, double du, double dv)
+// At least that.
+static double bounds_area_of_both(window_bounds a, window_bounds b)
 {
-    uint32_t best = 0;
-    double most = -1e300;
-    for (uint32_t i = 0; i < w->count; i++) {
-        const double at = du * w->u[i] + dv * w->v[i];
-        best = at > most ? i : best;
-        most = at > most ? at : most;
-    }
-    return best;
+    const double u0 = a.u0 > b.u0 ? a.u0 : b.u0, u1 = a.u1 < b.u1 ? a.u1 : b.u1, v0 = a.v0 > b.v0 ? a.v0 : b.v0, v1 = a.v1 < b.v1 ? a.v1 : b.v1;
+    return (u1 - u0) * (v1 - v0); // they touch
 }
 
-static int is_near_inside(const window *w, double u, double v, double give)
+typedef struct ends { uint32_t far, near; } ends; // corners farthest along a direction, and against it
+
+static ends ends_of(const loop *l, double du, double dv)
 {
-    for (uint32_t i = 0, before = w->count - 1; i < w->count; before = i++) {
-        const double eu = w->u[i] - w->u[before], ev = w->v[i] - w->v[before];
-        if (eu * (v - w->v[before]) - ev * (u - w->u[before]) < -give * (fabs(eu) + fabs(ev))) return 0;
+    ends e = {0, 0};
+    double most = -1e300, least = 1e300;
+    for (uint32_t i = 0; i < l->count; i++) {
+        const double at = du * l->u[i] + dv * l->v[i];
+        e.far = at > most ? i : e.far;
+        e.near = at < least ? i : e.near;
+        most = at > most ? at : most;
+        least = at < least ? at : least;
     }
-    return 1;
+    return e;
+}
+
+static int is_near_inside(const loop *l, double u, double v, double give)
+{
+    const pair pu = pair_of(u), pv = pair_of(v), share = pair_of(-give);
+    uint64_t out = 0;
+    for (uint32_t i = 0; i < l->count; i += PAIR) {
+        const pair at_u = pair_load(l->u + i), at_v = pair_load(l->v + i);
+        const pair eu = pair_subtract(pair_load(l->u + i + 1), at_u), ev = pair_subtract(pair_load(l->v + i + 1), at_v);
+        const pair turn = pair_subtract(pair_mul(eu, pair_subtract(pv, at_v)), pair_mul(ev, pair_subtract(pu, at_u)));
+        out |= (uint64_t)pair_below(turn, pair_mul(share, pair_add(pair_size(eu), pair_size(ev)))) << i;
+    }
+    return !(out & pair_bits(l->count));
 }
 
 // The middle of the line that bridges both on one side of their middles lies in one of them, or near: else their hull is no union.
-static int is_bridged(const window *a, const window *b, double du, double dv, double give)
+static int is_bridged(const loop *a, const loop *b, uint32_t i, uint32_t k, double give)
 {
-    const uint32_t i = farthest(a, du, dv), k = farthest(b, du, dv);
     const double u = (a->u[i] + b->u[k]) / 2, v = (a->v[i] + b->v[k]) / 2;
     return is_near_inside(a, u, v, give) || is_near_inside(b, u, v, give);
 }
 
-static int may_join(const window *a, const window *b)
+typedef struct two_windows { const window *a, *b; loop la, lb; } two_windows; // and their closed loops
+
+static int may_join(const two_windows *t, double spare)
 {
-    const window_bounds around = window_bounds_union(a->bounds, b->bounds);
-    const double give = ((around.u1 - around.u0) + (around.v1 - around.v0)) / 256; // well above what an area to spare lets through
-    const double du = (b->bounds.u0 + b->bounds.u1) - (a->bounds.u0 + a->bounds.u1), dv = (b->bounds.v0 + b->bounds.v1) - (a->bounds.v0 + a->bounds.v1);
-    return is_bridged(a, b, -dv, du, give) && is_bridged(a, b, dv, -du, give);
+    const window_bounds p = t->a->bounds, q = t->b->bounds, around = window_bounds_union(p, q);
+    const double give = ((around.u1 - around.u0) + (around.v1 - around.v0)) * (1.0 / 256 + spare); // above what an area to spare lets through
+    const double du = (q.u0 + q.u1) - (p.u0 + p.u1), dv = (q.v0 + q.v1) - (p.v0 + p.v1);
+    const ends a = ends_of(&t->la, -dv, du), b = ends_of(&t->lb, -dv, du);
+    return is_bridged(&t->la, &t->lb, a.far, b.far, give) && is_bridged(&t->la, &t->lb, a.near, b.near, give);
 }
 
 int window_join(const window *a, const window *b, double spare, window *out)
 {
-    loop hull, more;
-    if (!window_bounds_touch(a->bounds, b->bounds) || !may_join(a, b)) return 0;
-    loop_take(a, &hull);
-    loop_take(b, &more);
-    if (!loop_hull(&hull, &more) || hull.count < 3 || hull.count > WINDOW_POINTS) return 0;
-    const double area = loop_area(hull.u, hull.v, hull.count), sum = window_area(a) + window_area(b);
+    if (!window_bounds_touch(a->bounds, b->bounds)) return 0;
+    two_windows t;
+    t.a = a;
+    t.b = b;
+    loop_take(a, &t.la);
+    loop_take(b, &t.lb);
+    if (!may_join(&t, spare)) return 0;
+    loop *hull = &t.la;
+    const double sum = window_area(a) + window_area(b);
+    if (!loop_hull(hull, &t.lb) || hull->count < 3 || hull->count > WINDOW_POINTS) return 0;
+    const double area = loop_area(hull->u, hull->v, hull->count);
     if (area - sum > spare * area) return 0;
-    if (area - (sum - area_of_both(a, b)) > spare * area) return 0;
-    loop_hand_over(&hull, out);
+    if (area - (sum - bounds_area_of_both(a->bounds, b->bounds)) > spare * area && area - (sum - area_of_both(a, &t.lb)) > spare * area) return 0;
+    loop_hand_over(hull, out);
     return 1;
 }

@@ -21,7 +21,7 @@ typedef struct window_bounds { double u0, u1, v0, v1; } window_bounds;
 typedef struct window {
     window_bounds bounds;
     uint32_t count, next; // next: of a list, or WINDOW_NONE
-    double u[WINDOW_POINTS], v[WINDOW_POINTS], spare[8]; // spare: copies run over, see loop_copy
+    double u[WINDOW_POINTS + 4], v[WINDOW_POINTS + 4]; // copies and pairs run over, see loop_copy
 } window;
 
 typedef enum window_fate {
@@ -37,9 +37,10 @@ window_fate window_cut(const window *in, const window_line *lines, uint32_t line
 // The hull of both, SAME where b lies inside a (and then nothing is written), FEWER or GREW. out may be neither.
 void window_copy(const window *from, window *to); // all but next
 window_fate window_hull(const window *a, const window *b, window *out);
-// 1: the union of both is convex but for `spare` of its area, and *out is its hull. out may be neither.
+// 1: the union of both fills its hull but for `spare` of the hull's area, and *out is the hull. out may be neither.
 int window_join(const window *a, const window *b, double spare, window *out);
 int window_contains(const window *outer, const window *inner); // every corner of inner lies in outer, exactly
+int window_is_outside(const window *w, window_line line); // no corner's value is above 0
 double window_area(const window *w);
 // Lines through the edges, moved out until no corner is outside; as many as corners.
 void window_edges(const window *w, window_line lines[WINDOW_POINTS]);

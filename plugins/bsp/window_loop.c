@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "window_loop.h"
 
+#include "pairs.h"
+
 #include <portcullis/wide_integer.h>
 
 #include <math.h>
@@ -56,45 +58,48 @@ int loop_turn(loop_point a, loop_point b, loop_point c)
 
 // ---- Hulls, point by point ----
 
-typedef struct sides { uint8_t out[LOOP_MOST]; uint32_t count, entries, first; } sides; // of a point: edges that have it outside
-
-// entries: how often, round the loop, an edge that has it outside follows one that has not.
-static void sides_find(const loop *l, loop_point p, sides *s)
+uint64_t loop_sides_out(const loop *l, loop_point p)
 {
-    uint32_t doubts = 0;
-    s->count = s->entries = s->first = 0;
-    for (uint32_t i = 0; i < l->count; i++) {
-        const uint32_t k = i + 1 < l->count ? i + 1 : 0;
-        const double left = (l->u[k] - l->u[i]) * (p.v - l->v[i]), right = (l->v[k] - l->v[i]) * (p.u - l->u[i]), value = left - right;
-        const double doubt = TURN_DOUBT * (fabs(left) + fabs(right));
-        s->out[i] = value < 0;
-        doubts += fabs(value) <= doubt;
+    const pair pu = pair_of(p.u), pv = pair_of(p.v), share = pair_of(TURN_DOUBT), zero = pair_of(0);
+    const uint64_t all = pair_bits(l->count);
+    uint64_t out = 0, doubts = 0;
+    for (uint32_t i = 0; i < l->count; i += PAIR) {
+        const pair u = pair_load(l->u + i), v = pair_load(l->v + i);
+        const pair left = pair_mul(pair_subtract(pair_load(l->u + i + 1), u), pair_subtract(pv, v));
+        const pair right = pair_mul(pair_subtract(pair_load(l->v + i + 1), v), pair_subtract(pu, u));
+        const pair value = pair_subtract(left, right);
+        out |= (uint64_t)pair_below(value, zero) << i;
+        doubts |= (uint64_t)pair_at_most(pair_size(value), pair_mul(share, pair_add(pair_size(left), pair_size(right)))) << i;
     }
-    for (uint32_t i = 0; i < l->count && doubts; i++) {
-        const uint32_t k = i + 1 < l->count ? i + 1 : 0;
-        s->out[i] = loop_turn((loop_point){l->u[i], l->v[i]}, (loop_point){l->u[k], l->v[k]}, p) < 0;
+    for (doubts &= all; doubts; doubts &= doubts - 1) {
+        const uint32_t i = pair_lowest(doubts);
+        const uint64_t bit = (uint64_t)1 << i;
+        out = loop_turn((loop_point){l->u[i], l->v[i]}, (loop_point){l->u[i + 1], l->v[i + 1]}, p) < 0 ? out | bit : out & ~bit;
     }
-    for (uint32_t i = 0, before = l->count - 1; i < l->count; before = i++) {
-        const uint32_t enters = s->out[i] & ~s->out[before] & 1u;
-        s->count += s->out[i];
-        s->entries += enters;
-        s->first += enters * i;
-    }
+    return out & all;
 }
 
-// The corners between the edges that have the point outside give way to it.
-static void point_put(loop *l, const sides *s, loop_point p)
+static void corners_move(loop *l, uint32_t from, uint32_t count, uint32_t to)
 {
-    loop out;
-    const uint32_t count = l->count, kept = count - s->count + 1; // corners from the end of the last such edge to the start of the first
-    const uint32_t start = s->first + s->count < count ? s->first + s->count : s->first + s->count - count;
-    const uint32_t tail = start + kept <= count ? kept : count - start;
-    loop_copy(l->u + start, l->v + start, tail, out.u, out.v);
-    loop_copy(l->u, l->v, kept - tail, out.u + tail, out.v + tail);
-    out.u[kept] = p.u;
-    out.v[kept] = p.v;
-    loop_copy(out.u, out.v, kept + 1, l->u, l->v);
-    l->count = kept + 1;
+    memmove(l->u + to, l->u + from, count * sizeof *l->u);
+    memmove(l->v + to, l->v + from, count * sizeof *l->v);
+}
+
+// The corners between the edges that have the point outside, `first` up to before `end`, give way to it.
+static void point_put(loop *l, uint32_t first, uint32_t end, loop_point p)
+{
+    uint32_t last = first, behind = 0; // corners up to `last` stay before it, `behind` more after it
+    if (end > first) {
+        behind = l->count - end;
+        corners_move(l, end, behind, first + 2);
+    } else if (end > 0) { // round the loop's seam
+        last = first - end;
+        corners_move(l, end, last + 1, 0);
+    }
+    l->u[last + 1] = p.u;
+    l->v[last + 1] = p.v;
+    l->count = last + 2 + behind;
+    loop_close(l);
 }
 
 // ---- Hulls of sorted points ----
@@ -149,15 +154,17 @@ int loop_hull(loop *hull, const loop *more)
     int changed = 0;
     for (uint32_t i = 0; i < more->count; i++) {
         const loop_point p = {more->u[i], more->v[i]};
-        sides s;
-        sides_find(hull, p, &s);
-        if (s.count == 0) continue;
+        const int is_many = hull->count > 64;
+        const uint64_t out = is_many ? 0 : loop_sides_out(hull, p);
+        if (!out && !is_many) continue;
+        const uint64_t before = is_many ? 0 : pair_turned(out, hull->count), enters = out & ~before;
         changed = 1;
-        if (s.entries != 1) { // one is bent by rounding
+        if (!enters || enters & (enters - 1)) { // one is bent by rounding
             sorted_hull(hull, more);
+            loop_close(hull);
             return 1;
         }
-        point_put(hull, &s, p);
+        point_put(hull, pair_lowest(enters), pair_lowest(before & ~out), p);
     }
     return changed;
 }

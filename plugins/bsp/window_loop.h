@@ -22,10 +22,18 @@ static inline void loop_copy(const double *from_u, const double *from_v, uint32_
     }
 }
 
+// The first corner stands behind the last once more.
+static inline void loop_close(loop *l)
+{
+    l->u[l->count] = l->u[0];
+    l->v[l->count] = l->v[0];
+}
+
 int loop_turn(loop_point a, loop_point b, loop_point c); // 1: to the left, -1: to the right, 0: all on one line
 double loop_area(const double *u, const double *v, uint32_t count);
 void loop_tidy(loop *l); // corners on one spot become one
-// Takes in the points of `more`. 0: they all lay inside, nothing changed. Counts are at most 34 each.
+// Takes in the points of `more`. 0: they all lay inside, nothing changed. Counts are at most 34 each. `hull` is closed, before and after.
 int loop_hull(loop *hull, const loop *more);
+uint64_t loop_sides_out(const loop *closed, loop_point p); // of at most 64: a bit for each edge that has the point outside, exactly
 
 #endif

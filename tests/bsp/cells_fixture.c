@@ -8,36 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-// ---- The host ----
-
-static void *host_alloc(const cull_host *host, size_t size, size_t align)
-{
-    cells_host *h = host->user;
-    (void)align; // 64 bytes always
-    return memory_alloc(&h->counted.memory, size, 1);
-}
-
-static void host_free(const cull_host *host, void *memory, size_t size)
-{
-    cells_host *h = host->user;
-    memory_free(&h->counted.memory, memory, size, 1);
-}
-
-static void host_log(const cull_host *host, cull_log_level level, const char *message)
-{
-    cells_host *h = host->user;
-    (void)level;
-    snprintf(h->last_log, sizeof h->last_log, "%s", message);
-    h->logs++;
-}
-
-void cells_host_init(cells_host *h, uint64_t fail_at)
-{
-    memset(h, 0, sizeof *h);
-    failing_allocator_init(&h->counted, fail_at);
-    h->host = (cull_host){.abi = CULL_ABI, .user = h, .alloc = host_alloc, .free = host_free, .log = host_log};
-}
-
 static void give_up(const char *what)
 {
     fprintf(stderr, "cells_fixture: %s\n", what);
@@ -104,127 +74,11 @@ const zone_data *cells_map_largest(const cells_map *m)
     return best;
 }
 
-// ---- Zones made by hand ----
-
-void hand_zone_init(hand_zone *z)
-{
-    memset(z, 0, sizeof *z);
-    z->items = some(HAND_MOST, sizeof *z->items);
-    z->walls = some(HAND_MOST, sizeof *z->walls);
-    z->planes = some(HAND_MOST, sizeof *z->planes);
-    z->positions = some(8 * HAND_MOST, sizeof *z->positions);
-    z->wall_vertices = some(8 * HAND_MOST, sizeof *z->wall_vertices);
-    for (int i = 0; i < 6; i++) z->rows[i] = some(HAND_MOST + CULL_PADDING, sizeof *z->rows[i]);
-}
-
-static void put_box(hand_zone *z, uint32_t item, cull_box box)
-{
-    const float rows[6] = {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z};
-    for (int i = 0; i < 6; i++) z->rows[i][item] = rows[i];
-}
-
-static uint32_t item_add(hand_zone *z, uint32_t flags)
-{
-    if (z->zone.item_count == HAND_MOST || z->zone.wall_vertex_count + 64 > 8 * HAND_MOST) give_up("the zone is full");
-    const uint32_t item = z->zone.item_count++;
-    z->items[item] = (cull_item){.polygon_count = 1, .flags = flags};
-    return item;
-}
-
-void hand_zone_wall(hand_zone *z, const cull_vec3 *points, uint32_t count, uint32_t flags)
-{
-    const uint32_t item = item_add(z, flags | CULL_ITEM_WALL), first = z->zone.wall_vertex_count;
-    cull_box box = cull_box_none();
-    double n[3] = {0, 0, 0};
-    for (uint32_t i = 0; i < count; i++) {
-        z->positions[first + i] = points[i];
-        z->wall_vertices[first + i] = first + i;
-        box = cull_box_with_point(box, points[i]);
-        const cull_vec3 a = points[i], b = points[(i + 1) % count];
-        n[0] += ((double)a.y - (double)b.y) * ((double)a.z + (double)b.z);
-        n[1] += ((double)a.z - (double)b.z) * ((double)a.x + (double)b.x);
-        n[2] += ((double)a.x - (double)b.x) * ((double)a.y + (double)b.y);
-    }
-    const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), inverse = length > 0 ? 1 / length : 0;
-    for (int i = 0; i < 3; i++) n[i] *= inverse;
-    const double offset = -(n[0] * (double)points[0].x + n[1] * (double)points[0].y + n[2] * (double)points[0].z);
-    z->planes[z->zone.plane_count] = (cull_plane){{(float)n[0], (float)n[1], (float)n[2]}, (float)offset};
-    z->walls[item] = (cull_wall){first, count, z->zone.plane_count++, 0};
-    z->zone.wall_vertex_count = z->zone.position_count = first + count;
-    put_box(z, item, box);
-}
-
-void hand_zone_cluster(hand_zone *z, cull_box box)
-{
-    put_box(z, item_add(z, CULL_ITEM_BOX), box);
-}
-
-void hand_zone_portal(hand_zone *z, const cull_vec3 *points, uint32_t count)
-{
-    const uint32_t p = z->zone.portal_count++;
-    hand_zone scratch;
-    if (p >= 16 || count > 16) give_up("too many portals");
-    memcpy(z->portal_points[p], points, count * sizeof *points);
-    hand_zone_init(&scratch);
-    hand_zone_wall(&scratch, points, count, 0);
-    z->portals[p] = (cull_portal){.points = z->portal_points[p], .plane = scratch.planes[0], .point_count = count};
-    hand_zone_free(&scratch);
-}
-
-void hand_zone_box(hand_zone *z, cull_box box, hand_face face, uint32_t flags)
-{
-    const float c[2][3] = {{box.min.x, box.min.y, box.min.z}, {box.max.x, box.max.y, box.max.z}};
-    for (int axis = 0; axis < 3; axis++)
-        for (int high = 0; high < 2; high++) {
-            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-            static const int around[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}}; // counterclockwise against +axis
-            cull_vec3 points[4];
-            for (int i = 0; i < 4; i++) {
-                float p[3];
-                p[axis] = c[high][axis];
-                p[u] = c[around[i][0]][u];
-                p[v] = c[around[i][1]][v];
-                const int to = high == (face == FACE_OUT) ? i : 3 - i;
-                points[to] = (cull_vec3){p[0], p[1], p[2]};
-            }
-            hand_zone_wall(z, points, 4, flags);
-        }
-}
-
-void hand_zone_end(hand_zone *z)
-{
-    cull_zone *out = &z->zone;
-    out->items = z->items;
-    out->boxes = (cull_boxes){z->rows[0], z->rows[1], z->rows[2], z->rows[3], z->rows[4], z->rows[5]};
-    out->positions = z->positions;
-    out->walls = z->walls;
-    out->wall_vertices = z->wall_vertices;
-    out->planes = z->planes;
-    out->portals = z->portals;
-    cull_box box = cull_box_none();
-    for (uint32_t i = 0; i < out->item_count; i++) box = cull_box_union(box, cull_box_at(&out->boxes, i));
-    for (uint32_t i = 0; i < out->portal_count; i++)
-        for (uint32_t k = 0; k < out->portals[i].point_count; k++) box = cull_box_with_point(box, out->portals[i].points[k]);
-    if (out->item_count + out->portal_count == 0) box = (cull_box){{0, 0, 0}, {0, 0, 0}};
-    out->box = box;
-    out->radius = cull_box_radius(box);
-}
-
-void hand_zone_free(hand_zone *z)
-{
-    free(z->items);
-    free(z->walls);
-    free(z->planes);
-    free(z->positions);
-    free(z->wall_vertices);
-    for (int i = 0; i < 6; i++) free(z->rows[i]);
-}
-
 // ---- Built ----
 
 void cells_built_make(cells_built *b, const cull_zone *zone)
 {
-    cells_host_init(&b->host, 0);
+    culler_host_init(&b->host, 0);
     if (bsp_tree_build(&b->host.host, &(bsp_source){.zone = zone}, &b->tree) != CULL_OK) give_up("no tree");
     if (bsp_cells_build(&b->host.host, zone, &b->tree, &b->cells) != CULL_OK) give_up("no cells");
 }
@@ -233,7 +87,7 @@ int cells_built_free(cells_built *b)
 {
     bsp_cells_free(&b->host.host, &b->cells);
     bsp_tree_free(&b->host.host, &b->tree);
-    return failing_allocator_is_clean(&b->host.counted);
+    return failing_allocator_is_clean(&b->host.memory);
 }
 
 static uint64_t hash_on(uint64_t hash, const void *bytes, size_t size) // Fowler, Noll and Vo's 1a
@@ -257,7 +111,8 @@ uint64_t cells_hash(const bsp_cells_data *c, const uint32_t *order)
     hash = hash_on(hash, c->opening_points, c->opening_point_count * sizeof *c->opening_points);
     hash = hash_on(hash, c->entry_points, c->entry_point_count * sizeof *c->entry_points);
     hash = hash_on(hash, c->portal_offsets, (c->portal_count + (size_t)1) * sizeof *c->portal_offsets);
-    return hash_on(hash, c->portal_cells, c->portal_cell_count * sizeof *c->portal_cells);
+    hash = hash_on(hash, c->stands, c->stand_count * sizeof *c->stands);
+    return hash_on(hash, c->stand_points, c->stand_point_count * sizeof *c->stand_points);
 }
 
 // ---- Segments ----

@@ -1,22 +1,13 @@
-// Zones for tests of the cells: from maps by the whole compiler, from walls made by hand; and segments walked through the cells.
+// For tests of the cells: zones from maps by the whole compiler, cells built, segments walked through them.
 // SPDX-License-Identifier: MIT
 #ifndef PORTCULLIS_TESTS_CELLS_FIXTURE_H
 #define PORTCULLIS_TESTS_CELLS_FIXTURE_H
 
 #include "host/core/zone_data.h"
 #include "plugins/bsp/cells.h"
-#include "tests/common/failing_allocator.h"
+#include "tests/common/culler_host.h"
+#include "tests/common/hand_zone.h"
 #include "tests/compile/whole_fixture.h"
-
-// ---- The host ----
-
-typedef struct cells_host {
-    cull_host host;
-    failing_allocator counted;
-    char last_log[256];
-    uint32_t logs;
-} cells_host;
-void cells_host_init(cells_host *h, uint64_t fail_at);
 
 // ---- A compiled map ----
 
@@ -29,34 +20,10 @@ int cells_map_open(const char *name, portal_choice portals, cells_map *out);
 void cells_map_close(cells_map *m);
 const zone_data *cells_map_largest(const cells_map *m); // by items
 
-// ---- Zones made by hand ----
-
-enum { HAND_MOST = 40000 };
-typedef struct hand_zone { // positions in float, planes in double rounded to float, no exact ones
-    cull_zone zone;
-    cull_item *items;
-    cull_wall *walls;
-    cull_vec3 *positions;
-    uint32_t *wall_vertices, *indices;
-    cull_plane *planes;
-    float *rows[6];
-    cull_portal portals[16];
-    cull_vec3 portal_points[16][16];
-} hand_zone;
-void hand_zone_init(hand_zone *z);
-// A wall, counterclockwise from its front; a plane of its own.
-void hand_zone_wall(hand_zone *z, const cull_vec3 *points, uint32_t count, uint32_t flags);
-void hand_zone_cluster(hand_zone *z, cull_box box);
-void hand_zone_portal(hand_zone *z, const cull_vec3 *points, uint32_t count);
-typedef enum hand_face { FACE_IN, FACE_OUT } hand_face; // where the walls of a box show their front
-void hand_zone_box(hand_zone *z, cull_box box, hand_face face, uint32_t flags);
-void hand_zone_end(hand_zone *z); // boxes, radius
-void hand_zone_free(hand_zone *z);
-
 // ---- Built ----
 
 typedef struct cells_built {
-    cells_host host;
+    culler_host host;
     bsp_tree tree;
     bsp_cells_data cells;
 } cells_built;

@@ -167,10 +167,11 @@ static void inside_make(sight *s)
     uint32_t *stack = calloc(c->cell_count + 1, sizeof *stack), count = 0;
     s->inside = calloc(c->cell_count + 1, 1);
     if (!stack || !s->inside) abort();
-    for (uint32_t i = 0; i < c->cell_count; i++) s->inside[i] = c->portal_cell_count == 0;
-    for (uint32_t i = 0; i < c->portal_cell_count; i++) {
-        if (!s->inside[c->portal_cells[i]]) stack[count++] = c->portal_cells[i];
-        s->inside[c->portal_cells[i]] = 1;
+    for (uint32_t i = 0; i < c->cell_count; i++) s->inside[i] = c->stand_count == 0;
+    for (uint32_t i = 0; i < c->stand_count; i++) {
+        const uint32_t cell = c->stands[i].cell;
+        if (!s->inside[cell]) stack[count++] = cell;
+        s->inside[cell] = 1;
     }
     while (count) {
         const bsp_cell *from = &c->cells[stack[--count]];

@@ -323,13 +323,15 @@ static void portal_put(grid_cells *g, int axis, const uint32_t face[3], int insi
     const bsp_plane *p = &g->data.planes[plane_of(g, axis, face[axis], from_below)];
     g->portals[i] = (cull_portal){.points = g->portal_points[i], .point_count = 4};
     g->portals[i].plane = (cull_plane){{(float)p->normal[0], (float)p->normal[1], (float)p->normal[2]}, (float)p->offset};
-    g->data.portal_cells[i] = room;
+    g->data.stands[i] = (bsp_stand){room, 4 * i, 4, 0};
+    memcpy(g->data.stand_points + (size_t)4 * i, g->portal_points[i], sizeof g->portal_points[i]);
 }
 
 static void portals_make(grid_cells *g)
 {
     g->data.portal_offsets = calloc(7, sizeof *g->data.portal_offsets);
-    g->data.portal_cells = calloc(6, sizeof *g->data.portal_cells);
+    g->data.stands = calloc(6, sizeof *g->data.stands);
+    g->data.stand_points = calloc(24, sizeof *g->data.stand_points);
     g->zone.portals = g->portals;
     for (int k = 0; k < 6 && g->foreign != BSP_NONE; k++) {
         const int axis = k / 2, above = k % 2;
@@ -433,7 +435,8 @@ void grid_free(grid_cells *g)
     free(g->data.entries);
     free(g->data.entry_points);
     free(g->data.portal_offsets);
-    free(g->data.portal_cells);
+    free(g->data.stands);
+    free(g->data.stand_points);
     free(g->items);
     free(g->box_memory);
     for (int axis = 0; axis < 3; axis++) free(g->faces[axis]);

@@ -23,8 +23,8 @@ typedef struct totals {
 
 static void measure(const cull_zone *zone, uint64_t segments, totals *t)
 {
-    cells_host h;
-    cells_host_init(&h, 0);
+    culler_host h;
+    culler_host_init(&h, 0);
     bsp_tree tree;
     bsp_cells_data cells;
     const double start = cpu_ms();
@@ -51,7 +51,7 @@ static void measure(const cull_zone *zone, uint64_t segments, totals *t)
     for (uint32_t i = 0; reached && i < cells.opening_count; i++) reached[cells.openings[i].to] = 1;
     for (uint32_t i = 0; reached && i < cells.cell_count; i++) t->orphans += cells.cell_count > 1 && !reached[i] && cells.cells[i].entry_count > 0;
     free(reached);
-    if (h.logs) printf("log: %s\n", h.last_log);
+    if (h.lines) printf("log: %s\n", h.last_line);
     if (segments && cells.cell_count) {
         sight_figures f = {0};
         sight_check(zone, &tree, &cells, segments, 7, &f);
@@ -59,7 +59,7 @@ static void measure(const cull_zone *zone, uint64_t segments, totals *t)
     }
     bsp_cells_free(&h.host, &cells);
     bsp_tree_free(&h.host, &tree);
-    if (!failing_allocator_is_clean(&h.counted)) printf("memory was lost\n");
+    if (!failing_allocator_is_clean(&h.memory)) printf("memory was lost\n");
 }
 
 int main(int argc, char **argv)

@@ -182,11 +182,11 @@ int main(int argc, char **argv)
     const scene_zone *place = &map.whole.scene->zones[cells_map_largest(&map)->index];
     report silent = {0};
     camera_path path;
-    cells_host h;
+    culler_host h;
     bsp_tree tree;
     bsp_cells_data cells;
     bsp_flow_index index;
-    cells_host_init(&h, 0);
+    culler_host_init(&h, 0);
     if (camera_path_load(argc > 2 ? argv[2] : "auto:20", map.whole.scene, 16.0 / 9, allocator_heap(), &silent, &path) != RESULT_OK) abort();
     if (bsp_tree_build(&h.host, &(bsp_source){.zone = z}, &tree) != CULL_OK || bsp_cells_build(&h.host, z, &tree, &cells) != CULL_OK) abort();
     if (bsp_flow_build(&h.host, z, tree.order, &cells, &index) != CULL_OK) abort();

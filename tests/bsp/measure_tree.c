@@ -21,10 +21,10 @@ static double now_ms(void)
 static int measure_zone(const scene *s, uint32_t zone, bsp_wish wish, int is_checked)
 {
     zone_data data;
-    tree_host host;
+    culler_host host;
     bsp_tree tree;
     if (zone_data_open(&(zone_data_request){s, zone, 0}, allocator_heap(), &data) != RESULT_OK) return 1;
-    tree_host_init(&host, 0);
+    culler_host_init(&host, 0);
     const bsp_source from = {&data.zone, NULL, wish};
     const double start = now_ms();
     if (bsp_tree_build(&host.host, &from, &tree) != CULL_OK) return 1;

@@ -9,38 +9,23 @@
 
 // ---- Sessions: see tests/frustum/fixture.h ----
 
-const cull_plugin *plugin_named(const char *id); // from the folder named in PORTCULLIS_PLUGINS; NULL when it isn't there
 const cull_plugin *bsp_or_skip(void);
 
 typedef struct bsp_values { const char *backface, *split, *choose, *cells, *isa; } bsp_values; // in the order of the plugin's options
 #define BSP_PLAIN_VALUES ((bsp_values){"0", "0", "balance", "off", "auto"})
-cull_result bsp_open(session *s, test_host *h, const cull_zone *zone, const bsp_values *values);
+cull_result bsp_open(session *s, culler_host *h, const cull_zone *zone, const bsp_values *values);
 
 // seen[item of the zone] = 1 or 0. NULL, or what is wrong with the runs: range, repeats, more than told.
 const char *select_set(const session *s, uint8_t *seen);
 
 // ---- Scenes ----
 
-typedef struct wall_zone {
-    test_zone z; // z.zone is whole once wall_zone_end has run
-    cull_box *boxes;
-    cull_wall *walls;
-    cull_plane *planes;
-    cull_vec3 *positions;
-    uint32_t *loops, *indices, *flags;
-    uint32_t item_count, position_count, index_count, plane_count, item_room;
-} wall_zone;
-enum { LOOP_MOST = 12 };
-void wall_zone_init(wall_zone *w, uint32_t items_most); // aborts without memory
-uint32_t wall_zone_wall(wall_zone *w, const cull_vec3 *points, uint32_t count, uint32_t flags); // counterclockwise from its front; a fan
-uint32_t wall_zone_box(wall_zone *w, cull_box box); // no wall
-void wall_zone_end(wall_zone *w);
-void wall_zone_free(wall_zone *w);
+enum { LOOP_MOST = 12 }; // corners of a wall
 // Item i of `from` stands at places[i], and is scaled.
-void wall_zone_changed(const wall_zone *from, const uint32_t *places, float scale, wall_zone *out);
+void zone_changed(const hand_zone *from, const uint32_t *places, float scale, hand_zone *out);
 
 typedef enum scene_kind { SCENE_ROOMS, SCENE_LOOSE, SCENE_BOXES, SCENE_MIXED, SCENE_COINCIDENT, SCENE_KIND_COUNT } scene_kind;
-void scene_fill(random_state *r, scene_kind kind, uint32_t items, wall_zone *out); // wall_zone_free it
+void scene_fill(uint64_t *r, scene_kind kind, uint32_t items, hand_zone *out); // hand_zone_free it
 
 // ---- Views: volumes guarded for the zone as a host makes them ----
 
@@ -52,7 +37,7 @@ typedef struct made_view {
     uint32_t volume_count;
 } made_view;
 // An eye in or around the zone's box, sometimes on a vertex; volumes: pictures of any angle from it.
-void view_fill(random_state *r, const cull_zone *zone, uint32_t volumes, made_view *out);
+void view_fill(uint64_t *r, const cull_zone *zone, uint32_t volumes, made_view *out);
 
 // ---- Oracles ----
 

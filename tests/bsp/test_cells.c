@@ -5,6 +5,7 @@
 #include "tests/common/test.h"
 
 #include <stdlib.h>
+#include <math.h>
 #include <string.h>
 
 // ---- Zones ----
@@ -333,6 +334,19 @@ static void faces_buried_between_boxes_that_touch_are_listed_where_they_meet_the
 
 // ---- Portals ----
 
+static double stand_area(const cells_built *b, uint32_t stand)
+{
+    const bsp_stand *s = &b->cells.stands[stand];
+    const cull_vec3 *p = b->cells.stand_points + s->first_point;
+    double n[3] = {0, 0, 0};
+    for (uint32_t i = 1; i + 1 < s->point_count; i++) {
+        const double u[3] = {(double)p[i].x - (double)p[0].x, (double)p[i].y - (double)p[0].y, (double)p[i].z - (double)p[0].z};
+        const double v[3] = {(double)p[i + 1].x - (double)p[0].x, (double)p[i + 1].y - (double)p[0].y, (double)p[i + 1].z - (double)p[0].z};
+        for (int k = 0; k < 3; k++) n[k] += u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+    }
+    return sqrt((n[0] * n[0] + n[1] * n[1]) + n[2] * n[2]) / 2;
+}
+
 static void a_portal_ends_the_zone_for_who_looks_out_and_names_the_cells_inside(void **state)
 {
     (void)state;
@@ -351,10 +365,10 @@ static void a_portal_ends_the_zone_for_who_looks_out_and_names_the_cells_inside(
     assert_int_equal(b.cells.cells[inside].opening_count, 0);
     assert_non_null(way(&b, beyond, inside)); // an eye a hair beyond it still sees in
     assert_int_equal(b.cells.portal_count, 1);
-    assert_int_equal(b.cells.portal_cell_count, 1);
+    assert_int_equal(b.cells.stand_count, 1);
     assert_int_equal(b.cells.portal_offsets[0], 0);
     assert_int_equal(b.cells.portal_offsets[1], 1);
-    assert_int_equal(b.cells.portal_cells[0], inside);
+    assert_int_equal(b.cells.stands[0].cell, inside);
     finish(&b, &z);
 }
 
@@ -380,8 +394,9 @@ static void a_portal_larger_than_its_hole_does_not_start_in_the_rock_around_it(v
     hand_zone_portal(&z, points, 4);
     build(&b, &z);
     const uint32_t door = cell_at(&b, 4.5, 1, 1.5);
-    assert_int_equal(b.cells.portal_cell_count, 1);
-    assert_int_equal(b.cells.portal_cells[0], door);
+    assert_int_equal(b.cells.stand_count, 1);
+    assert_int_equal(b.cells.stands[0].cell, door);
+    assert_float_equal(stand_area(&b, 0), 2, 1e-6); // the hole's, of the portal's 20
     uint8_t seen[256] = {0};
     flood(&b, door, seen);
     uint32_t reached = 0;
@@ -402,9 +417,10 @@ static void a_portal_in_an_open_zone_keeps_all_cells_that_it_borders(void **stat
     hand_zone_portal(&z, points, 4);
     build(&b, &z);
     const uint32_t above = cell_at(&b, 1, 1.5, 1), below = cell_at(&b, 1, 0.5, 1);
-    assert_int_equal(b.cells.portal_cell_count, 2);
-    assert_int_equal(b.cells.portal_cells[0], above < below ? above : below);
-    assert_int_equal(b.cells.portal_cells[1], above < below ? below : above);
+    assert_int_equal(b.cells.stand_count, 2);
+    assert_int_equal(b.cells.stands[0].cell, above < below ? above : below);
+    assert_int_equal(b.cells.stands[1].cell, above < below ? below : above);
+    for (uint32_t i = 0; i < 2; i++) assert_float_equal(stand_area(&b, i), 2, 1e-6); // each its half of the portal's 4
     finish(&b, &z);
 }
 
@@ -426,8 +442,8 @@ static void a_portal_in_no_wall_s_plane_gets_its_own(void **state)
     const uint32_t above = cell_at(&b, 0.5, 1, 1.5), below = cell_at(&b, 1.5, 1, 0.5);
     assert_null(way(&b, above, below));
     assert_non_null(way(&b, below, above));
-    assert_int_equal(b.cells.portal_cell_count, 1);
-    assert_int_equal(b.cells.portal_cells[0], above);
+    assert_int_equal(b.cells.stand_count, 1);
+    assert_int_equal(b.cells.stands[0].cell, above);
     finish(&b, &z);
 }
 
@@ -473,8 +489,8 @@ static void a_portal_without_area_is_told_and_left_out(void **state)
     hand_zone_portal(&z, points, 3);
     build(&b, &z);
     assert_int_equal(b.cells.cell_count, 7);
-    assert_int_equal(b.cells.portal_cell_count, 0);
-    assert_non_null(strstr(b.host.last_log, "no area"));
+    assert_int_equal(b.cells.stand_count, 0);
+    assert_non_null(strstr(b.host.last_line, "no area"));
     finish(&b, &z);
 }
 
@@ -564,7 +580,7 @@ static void too_many_cells_are_told_and_there_are_none(void **state)
     assert_int_equal(b.cells.cell_count, 0);
     assert_null(b.cells.nodes);
     assert_int_equal(bsp_cells_bytes(&b.cells), 0);
-    assert_non_null(strstr(b.host.last_log, "no cells"));
+    assert_non_null(strstr(b.host.last_line, "no cells"));
     finish(&b, &z);
 }
 
@@ -664,23 +680,23 @@ static void no_allocation_s_failure_is_lost(void **state)
     build(&b, &z);
     const uint64_t hash = cells_hash(&b.cells, b.tree.order);
     bsp_cells_free(&b.host.host, &b.cells);
-    const uint64_t blocks = b.host.counted.live_blocks;
+    const uint64_t blocks = b.host.memory.live_blocks;
     uint64_t failed = 0;
     for (uint64_t k = 1;; k++) {
-        b.host.counted.fail_at = b.host.counted.calls + k;
-        b.host.counted.failures = 0;
-        b.host.logs = 0;
+        b.host.memory.fail_at = b.host.memory.calls + k;
+        b.host.memory.failures = 0;
+        b.host.lines = 0;
         const cull_result result = bsp_cells_build(&b.host.host, &z.zone, &b.tree, &b.cells);
-        if (b.host.counted.failures == 0) {
+        if (b.host.memory.failures == 0) {
             assert_int_equal(result, CULL_OK);
             assert_int_equal(cells_hash(&b.cells, b.tree.order), hash);
             break;
         }
         failed++;
         assert_int_equal(result, CULL_ERR_MEMORY);
-        assert_int_equal(b.host.logs, 1);
+        assert_int_equal(b.host.lines, 1);
         assert_int_equal(b.cells.cell_count, 0);
-        assert_int_equal(b.host.counted.live_blocks, blocks);
+        assert_int_equal(b.host.memory.live_blocks, blocks);
     }
     assert_true(failed > 50);
     finish(&b, &z);

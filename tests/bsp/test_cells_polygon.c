@@ -139,8 +139,8 @@ static void every_cut_is_what_gmp_says(void **state)
     for (int family = 0; family < FAMILY_COUNT; family++) {
         uint64_t cuts = 0;
         for (uint32_t trial = 0; trial < TRIALS / FAMILY_COUNT; trial++) {
-            cells_host h;
-            cells_host_init(&h, 0);
+            culler_host h;
+            culler_host_init(&h, 0);
             table t;
             table_make(&t, (plane_family)family, &seed);
             exact_pool pool = exact_pool_make(&h.host, t.planes);
@@ -149,7 +149,7 @@ static void every_cut_is_what_gmp_says(void **state)
             assert_sound(&pool, &shape);
             cuts += cut_on(&pool, shape, &seed);
             exact_pool_free(&pool);
-            assert_true(failing_allocator_is_clean(&h.counted));
+            assert_true(failing_allocator_is_clean(&h.memory));
         }
         assert_true(cuts > TRIALS / FAMILY_COUNT); // more than one a polygon
     }
@@ -178,8 +178,8 @@ static void no_memory_is_told_and_nothing_leaks(void **state)
     uint32_t failures = 0;
     for (uint64_t fail_at = 1; fail_at < 8; fail_at++) {
         uint64_t seed = 9;
-        cells_host h;
-        cells_host_init(&h, fail_at);
+        culler_host h;
+        culler_host_init(&h, fail_at);
         table t;
         table_make(&t, FAMILY_SMALL, &seed);
         exact_pool pool = exact_pool_make(&h.host, t.planes);
@@ -191,9 +191,9 @@ static void no_memory_is_told_and_nothing_leaks(void **state)
             if (good && place == EXACT_ACROSS) good = exact_polygon_cut(&pool, &shape, by, &front, &behind);
         }
         failures += !good;
-        assert_true(good == (h.counted.failures == 0));
+        assert_true(good == (h.memory.failures == 0));
         exact_pool_free(&pool);
-        assert_true(failing_allocator_is_clean(&h.counted));
+        assert_true(failing_allocator_is_clean(&h.memory));
     }
     assert_in_range(failures, 2, 7);
 }

@@ -17,12 +17,12 @@ static const bsp_values all_values[] = {
 };
 enum { VALUES_COUNT = sizeof all_values / sizeof *all_values };
 
-static void must_be_the_loop_set(session *s, test_host *h, const cull_zone *zone, const made_view *v)
+static void must_be_the_loop_set(session *s, culler_host *h, const cull_zone *zone, const made_view *v)
 {
     static uint8_t expected[ITEMS_MOST], seen[ITEMS_MOST];
-    const uint64_t allocations = h->allocations;
+    const uint64_t allocations = h->memory.calls;
     session_select(s, &v->view, v->volumes, v->volume_count);
-    assert_true(h->allocations == allocations);
+    assert_true(h->memory.calls == allocations);
     const char *wrong = select_set(s, seen);
     if (wrong) fail_msg("%s", wrong);
     loop_set(zone, v, expected);
@@ -34,55 +34,55 @@ static void select_is_the_set_of_a_loop_over_the_items(void **state)
 {
     (void)state;
     static const uint32_t counts[] = {0, 1, 2, 7, 24, 25, 60, 200, ITEMS_MOST};
-    random_state r = {41};
+    uint64_t r = {41};
     for (int kind = 0; kind < SCENE_KIND_COUNT; kind++)
         for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
-            wall_zone w;
+            hand_zone w;
             scene_fill(&r, (scene_kind)kind, counts[c], &w);
             for (int o = 0; o < VALUES_COUNT; o++) {
-                test_host h;
+                culler_host h;
                 session s;
-                test_host_init(&h);
-                assert_int_equal(bsp_open(&s, &h, &w.z.zone, &all_values[o]), CULL_OK);
+                culler_host_init(&h, 0);
+                assert_int_equal(bsp_open(&s, &h, &w.zone, &all_values[o]), CULL_OK);
                 for (int q = 0; q < 25; q++) {
                     static made_view v;
-                    view_fill(&r, &w.z.zone, q % 3 ? 1 : (uint32_t)(random_next(&r) % (VIEW_VOLUMES_MOST + 1)), &v);
-                    must_be_the_loop_set(&s, &h, &w.z.zone, &v);
+                    view_fill(&r, &w.zone, q % 3 ? 1 : (uint32_t)(random_bits(&r) % (VIEW_VOLUMES_MOST + 1)), &v);
+                    must_be_the_loop_set(&s, &h, &w.zone, &v);
                 }
                 session_close(&s);
-                assert_int_equal(h.live_blocks, 0);
-                assert_int_equal(h.live_bytes, 0);
+                assert_int_equal(h.memory.live_blocks, 0);
+                assert_int_equal(h.memory.live_bytes, 0);
             }
-            wall_zone_free(&w);
+            hand_zone_free(&w);
         }
 }
 
 static void what_lies_inside_a_volume_is_found(void **state)
 {
     (void)state;
-    random_state r = {42};
+    uint64_t r = {42};
     uint32_t inside = 0;
     for (int kind = 0; kind < SCENE_KIND_COUNT; kind++) {
-        wall_zone w;
-        test_host h;
+        hand_zone w;
+        culler_host h;
         session s;
         scene_fill(&r, (scene_kind)kind, 120, &w);
-        test_host_init(&h);
-        assert_int_equal(bsp_open(&s, &h, &w.z.zone, &all_values[0]), CULL_OK);
+        culler_host_init(&h, 0);
+        assert_int_equal(bsp_open(&s, &h, &w.zone, &all_values[0]), CULL_OK);
         for (int q = 0; q < 60; q++) {
             static made_view v;
             static uint8_t seen[ITEMS_MOST];
-            view_fill(&r, &w.z.zone, 1 + (uint32_t)q % 2, &v);
+            view_fill(&r, &w.zone, 1 + (uint32_t)q % 2, &v);
             session_select(&s, &v.view, v.volumes, v.volume_count);
             assert_null(select_set(&s, seen));
-            for (uint32_t i = 0; i < w.item_count; i++) {
-                if (!item_is_inside(&w.z.zone, i, &v, 0)) continue;
+            for (uint32_t i = 0; i < w.zone.item_count; i++) {
+                if (!item_is_inside(&w.zone, i, &v, 0)) continue;
                 inside++;
                 assert_int_equal(seen[i], 1);
             }
         }
         session_close(&s);
-        wall_zone_free(&w);
+        hand_zone_free(&w);
     }
     assert_true(inside > 1000);
 }
@@ -93,23 +93,23 @@ static void walls_seen_from_behind_are_those_that_frustum_drops(void **state)
     const cull_plugin *frustum = plugin_named("frustum");
     const bsp_values values = {"1", "0", "balance", "off", "auto"}, plain = {"1", "0", "balance", "off", "plain"};
     const char *of_frustum[] = {"1", "auto"};
-    random_state r = {43};
+    uint64_t r = {43};
     uint32_t dropped = 0, fewer = 0;
     if (!frustum) skip();
     for (int kind = 0; kind < SCENE_KIND_COUNT; kind++) {
-        wall_zone w;
-        test_host h;
+        hand_zone w;
+        culler_host h;
         session s[3];
         scene_fill(&r, (scene_kind)kind, 300, &w);
-        test_host_init(&h);
-        assert_int_equal(bsp_open(&s[0], &h, &w.z.zone, &values), CULL_OK);
-        assert_int_equal(bsp_open(&s[1], &h, &w.z.zone, &plain), CULL_OK);
-        assert_int_equal(session_open(&s[2], &h, frustum, &w.z.zone, of_frustum), CULL_OK);
+        culler_host_init(&h, 0);
+        assert_int_equal(bsp_open(&s[0], &h, &w.zone, &values), CULL_OK);
+        assert_int_equal(bsp_open(&s[1], &h, &w.zone, &plain), CULL_OK);
+        assert_int_equal(session_open(&s[2], &h, frustum, &w.zone, of_frustum), CULL_OK);
         for (int q = 0; q < 150; q++) {
             static made_view v;
             static uint8_t seen[3][ITEMS_MOST], loop[ITEMS_MOST], everything[ITEMS_MOST];
             const cull_volume all = {NULL, 0, 0};
-            view_fill(&r, &w.z.zone, 1 + (uint32_t)q % 3, &v);
+            view_fill(&r, &w.zone, 1 + (uint32_t)q % 3, &v);
             if (q % 5 == 4) v.view.eye[3] = 0; // a direction
             for (int i = 0; i < 3; i++) {
                 session_select(&s[i], &v.view, v.volumes, v.volume_count);
@@ -117,8 +117,8 @@ static void walls_seen_from_behind_are_those_that_frustum_drops(void **state)
             }
             session_select(&s[2], &v.view, &all, 1);
             assert_null(select_set(&s[2], everything));
-            loop_set(&w.z.zone, &v, loop);
-            for (uint32_t i = 0; i < w.item_count; i++) {
+            loop_set(&w.zone, &v, loop);
+            for (uint32_t i = 0; i < w.zone.item_count; i++) {
                 assert_int_equal(seen[0][i], loop[i] & everything[i]);
                 assert_int_equal(seen[1][i], seen[0][i]);
                 assert_true(seen[0][i] <= seen[2][i]);
@@ -127,7 +127,7 @@ static void walls_seen_from_behind_are_those_that_frustum_drops(void **state)
             }
         }
         for (int i = 0; i < 3; i++) session_close(&s[i]);
-        wall_zone_free(&w);
+        hand_zone_free(&w);
     }
     assert_true(dropped > 10000 && fewer > 100); // the polygon's clip drops what a box's test keeps
 }
@@ -135,29 +135,29 @@ static void walls_seen_from_behind_are_those_that_frustum_drops(void **state)
 static void the_order_of_the_items_and_a_scale_by_a_power_of_two_change_nothing(void **state)
 {
     (void)state;
-    random_state r = {44};
+    uint64_t r = {44};
     static const float scales[] = {1, 0x1p-6f, 0x1p7f};
     for (int turn = 0; turn < 6; turn++) {
-        wall_zone a, b;
-        test_host h;
+        hand_zone a, b;
+        culler_host h;
         session sa, sb;
         uint32_t places[ITEMS_MOST];
         const float scale = scales[turn % 3];
         scene_fill(&r, turn % 2 ? SCENE_MIXED : SCENE_ROOMS, 150, &a);
-        for (uint32_t i = 0; i < a.item_count; i++) places[i] = i;
-        for (uint32_t i = a.item_count - 1; i > 0; i--) {
-            const uint32_t j = (uint32_t)(random_next(&r) % (i + 1)), spare = places[i];
+        for (uint32_t i = 0; i < a.zone.item_count; i++) places[i] = i;
+        for (uint32_t i = a.zone.item_count - 1; i > 0; i--) {
+            const uint32_t j = (uint32_t)(random_bits(&r) % (i + 1)), spare = places[i];
             places[i] = places[j];
             places[j] = spare;
         }
-        wall_zone_changed(&a, places, scale, &b);
-        test_host_init(&h);
-        assert_int_equal(bsp_open(&sa, &h, &a.z.zone, &all_values[0]), CULL_OK);
-        assert_int_equal(bsp_open(&sb, &h, &b.z.zone, &all_values[0]), CULL_OK);
+        zone_changed(&a, places, scale, &b);
+        culler_host_init(&h, 0);
+        assert_int_equal(bsp_open(&sa, &h, &a.zone, &all_values[0]), CULL_OK);
+        assert_int_equal(bsp_open(&sb, &h, &b.zone, &all_values[0]), CULL_OK);
         for (int q = 0; q < 40; q++) {
             static made_view v;
             static uint8_t seen_a[ITEMS_MOST], seen_b[ITEMS_MOST];
-            view_fill(&r, &a.z.zone, 2, &v);
+            view_fill(&r, &a.zone, 2, &v);
             session_select(&sa, &v.view, v.volumes, 2);
             assert_null(select_set(&sa, seen_a));
             for (int k = 0; k < 3; k++) v.view.eye[k] *= scale;
@@ -165,29 +165,29 @@ static void the_order_of_the_items_and_a_scale_by_a_power_of_two_change_nothing(
                 for (uint32_t k = 0; k < v.parts[p].plane_count; k++) v.parts[p].planes[k].offset *= scale;
             session_select(&sb, &v.view, v.volumes, 2);
             assert_null(select_set(&sb, seen_b));
-            for (uint32_t i = 0; i < a.item_count; i++) assert_int_equal(seen_a[i], seen_b[places[i]]);
+            for (uint32_t i = 0; i < a.zone.item_count; i++) assert_int_equal(seen_a[i], seen_b[places[i]]);
         }
         session_close(&sa);
         session_close(&sb);
-        wall_zone_free(&a);
-        wall_zone_free(&b);
+        hand_zone_free(&a);
+        hand_zone_free(&b);
     }
 }
 
 static void a_smaller_volume_and_fewer_volumes_give_a_subset(void **state)
 {
     (void)state;
-    random_state r = {45};
-    wall_zone w;
-    test_host h;
+    uint64_t r = {45};
+    hand_zone w;
+    culler_host h;
     session s;
     scene_fill(&r, SCENE_MIXED, 250, &w);
-    test_host_init(&h);
-    assert_int_equal(bsp_open(&s, &h, &w.z.zone, &all_values[0]), CULL_OK);
+    culler_host_init(&h, 0);
+    assert_int_equal(bsp_open(&s, &h, &w.zone, &all_values[0]), CULL_OK);
     for (int q = 0; q < 200; q++) {
         static made_view v;
         static uint8_t whole[ITEMS_MOST], part[ITEMS_MOST];
-        view_fill(&r, &w.z.zone, 3, &v);
+        view_fill(&r, &w.zone, 3, &v);
         session_select(&s, &v.view, v.volumes, 3);
         assert_null(select_set(&s, whole));
         if (q % 2)
@@ -195,44 +195,44 @@ static void a_smaller_volume_and_fewer_volumes_give_a_subset(void **state)
                 for (uint32_t k = 0; k < v.parts[p].plane_count; k++) v.parts[p].planes[k].offset -= 0.25f;
         session_select(&s, &v.view, v.volumes, q % 2 ? 3 : 2);
         assert_null(select_set(&s, part));
-        for (uint32_t i = 0; i < w.item_count; i++) assert_true(part[i] <= whole[i]);
+        for (uint32_t i = 0; i < w.zone.item_count; i++) assert_true(part[i] <= whole[i]);
     }
     session_close(&s);
-    wall_zone_free(&w);
+    hand_zone_free(&w);
 }
 
 static void cells_only_take_away(void **state)
 {
     (void)state;
     static const char *const ways[] = {"off", "rect", "hull", "exact"};
-    random_state r = {47};
+    uint64_t r = {47};
     for (int kind = 0; kind < SCENE_KIND_COUNT; kind++) {
-        wall_zone w;
-        test_host h;
+        hand_zone w;
+        culler_host h;
         session s[4];
         scene_fill(&r, (scene_kind)kind, 80, &w);
-        test_host_init(&h);
+        culler_host_init(&h, 0);
         for (int i = 0; i < 4; i++) {
             const bsp_values values = {"1", "0", "balance", ways[i], i % 2 ? "plain" : "auto"};
-            assert_int_equal(bsp_open(&s[i], &h, &w.z.zone, &values), CULL_OK);
+            assert_int_equal(bsp_open(&s[i], &h, &w.zone, &values), CULL_OK);
         }
         for (int q = 0; q < 60; q++) {
             static made_view v;
             static uint8_t seen[4][ITEMS_MOST];
-            view_fill(&r, &w.z.zone, q % 5 ? 1 : (uint32_t)(random_next(&r) % VIEW_VOLUMES_MOST), &v);
+            view_fill(&r, &w.zone, q % 5 ? 1 : (uint32_t)(random_bits(&r) % VIEW_VOLUMES_MOST), &v);
             if (q % 7 == 6) v.view.eye[3] = (float)(v.view.eye_exact[3] = 0); // no eye at a point: the tree is walked
             for (int i = 0; i < 4; i++) {
-                const uint64_t allocations = h.allocations;
+                const uint64_t allocations = h.memory.calls;
                 session_select(&s[i], &v.view, v.volumes, v.volume_count);
-                assert_true(h.allocations == allocations);
+                assert_true(h.memory.calls == allocations);
                 assert_null(select_set(&s[i], seen[i]));
-                for (uint32_t k = 0; k < w.item_count; k++) assert_true(seen[i][k] <= seen[0][k]);
-                if (q % 7 == 6) assert_memory_equal(seen[i], seen[0], w.item_count);
+                for (uint32_t k = 0; k < w.zone.item_count; k++) assert_true(seen[i][k] <= seen[0][k]);
+                if (q % 7 == 6) assert_memory_equal(seen[i], seen[0], w.zone.item_count);
             }
         }
         for (int i = 0; i < 4; i++) session_close(&s[i]);
-        assert_int_equal(h.live_blocks, 0);
-        wall_zone_free(&w);
+        assert_int_equal(h.memory.live_blocks, 0);
+        hand_zone_free(&w);
     }
 }
 
@@ -241,20 +241,20 @@ static void what_is_near_comes_before_what_is_far(void **state)
 {
     (void)state;
     enum { ROOMS = 60, LEAF_ROOMS = 9 }; // items of one leaf come in any order
-    wall_zone w;
-    test_host h;
+    hand_zone w;
+    culler_host h;
     session s;
-    wall_zone_init(&w, 6 * ROOMS);
+    hand_zone_open(&w, 6 * ROOMS, 24 * ROOMS);
     for (int room = 0; room < ROOMS; room++)
         for (int i = 0; i < 6; i++) {
             const float x = (float)(4 * room) + 0.5f * (float)i, z = i % 2 ? 1.0f : -1.0f;
             const cull_vec3 points[4] = {{x, 0, z}, {x, 2, z}, {x, 2, -z}, {x, 0, -z}};
-            wall_zone_wall(&w, points, 4, CULL_ITEM_WALL | CULL_ITEM_TWO_SIDED);
+            hand_zone_wall(&w, points, 4, CULL_ITEM_TWO_SIDED);
         }
-    wall_zone_end(&w);
-    test_host_init(&h);
+    hand_zone_end(&w);
+    culler_host_init(&h, 0);
     for (int o = 0; o < VALUES_COUNT; o++) {
-        assert_int_equal(bsp_open(&s, &h, &w.z.zone, &all_values[o]), CULL_OK);
+        assert_int_equal(bsp_open(&s, &h, &w.zone, &all_values[o]), CULL_OK);
         for (int end = 0; end < 2; end++) {
             const float sign = end ? -1.0f : 1.0f;
             const cull_plane ahead = {{sign, 0, 0}, end ? 4 * ROOMS + 10 : 10}; // all are
@@ -273,7 +273,7 @@ static void what_is_near_comes_before_what_is_far(void **state)
         }
         session_close(&s);
     }
-    wall_zone_free(&w);
+    hand_zone_free(&w);
 }
 
 static void a_triangle_beside_the_loop_is_found_too(void **state)
@@ -283,18 +283,18 @@ static void a_triangle_beside_the_loop_is_found_too(void **state)
     const cull_plane far_end = {{1, 0, 0}, -5}, beside_it = {{0.6f, -0.8f, 0}, -0.7f}; // x >= 5; the box reaches there, the triangle doesn't
     const cull_view view = {.eye = {0, 0, 5, 1}};
     for (int beside = 0; beside < 2; beside++) {
-        wall_zone w;
-        test_host h;
+        hand_zone w;
+        culler_host h;
         session s;
         uint8_t seen[1];
-        wall_zone_init(&w, 2);
-        wall_zone_wall(&w, loop, 4, CULL_ITEM_WALL);
-        w.positions[w.position_count++] = far_corner;
-        w.boxes[0] = cull_box_with_point(w.boxes[0], far_corner);
-        wall_zone_end(&w);
+        hand_zone_open(&w, 2, 8);
+        hand_zone_wall(&w, loop, 4, 0);
+        w.positions[w.zone.position_count++] = far_corner;
+        w.rows[3][0] = w.rows[4][0] = 9; // its box
+        hand_zone_end(&w);
         if (beside) w.indices[4] = 4; // (0,0) (9,9) (0,1)
-        test_host_init(&h);
-        assert_int_equal(bsp_open(&s, &h, &w.z.zone, &all_values[0]), CULL_OK);
+        culler_host_init(&h, 0);
+        assert_int_equal(bsp_open(&s, &h, &w.zone, &all_values[0]), CULL_OK);
         for (int at = 0; at < 2; at++) {
             const cull_volume volume = {at ? &beside_it : &far_end, 1, 0};
             session_select(&s, &view, &volume, 1);
@@ -302,7 +302,7 @@ static void a_triangle_beside_the_loop_is_found_too(void **state)
             assert_int_equal(seen[0], beside && !at);
         }
         session_close(&s);
-        wall_zone_free(&w);
+        hand_zone_free(&w);
     }
 }
 
@@ -313,18 +313,18 @@ static void bad_options_are_refused_with_the_legal_values(void **state)
                               {"0", "0", "balance", "on", "auto"}, {"0", "0", "balance", "off", "mmx"}};
     static const char *const says[] = {"backface=2: must be 0 or 1", "split=2: must be 0, 1 or node", "choose=best: must be balance, sah or first",
                                        "cells=on: must be off, rect, hull or exact", "isa=mmx: must be auto, avx2 or plain"};
-    wall_zone w;
-    test_host h;
+    hand_zone w;
+    culler_host h;
     session s;
-    wall_zone_init(&w, 0);
-    wall_zone_end(&w);
-    test_host_init(&h);
+    hand_zone_open(&w, 0, 0);
+    hand_zone_end(&w);
+    culler_host_init(&h, 0);
     for (int i = 0; i < 5; i++) {
-        assert_int_equal(bsp_open(&s, &h, &w.z.zone, &bad[i]), CULL_ERR_OPTION);
-        if (!strstr(h.last_log, says[i])) fail_msg("%s", h.last_log);
+        assert_int_equal(bsp_open(&s, &h, &w.zone, &bad[i]), CULL_ERR_OPTION);
+        if (!strstr(h.last_line, says[i])) fail_msg("%s", h.last_line);
     }
-    assert_int_equal(h.live_blocks, 0);
-    wall_zone_free(&w);
+    assert_int_equal(h.memory.live_blocks, 0);
+    hand_zone_free(&w);
 }
 
 static void every_allocation_may_fail_and_nothing_is_lost(void **state)
@@ -332,27 +332,27 @@ static void every_allocation_may_fail_and_nothing_is_lost(void **state)
     (void)state;
     const bsp_values values[] = {{"1", "0", "balance", "off", "auto"}, {"1", "1", "sah", "off", "auto"}, {"0", "node", "first", "off", "auto"},
                                  {"1", "0", "balance", "exact", "auto"}};
-    random_state r = {46};
-    wall_zone w;
+    uint64_t r = {46};
+    hand_zone w;
     scene_fill(&r, SCENE_MIXED, 40, &w);
     for (int o = 0; o < 4; o++) {
         uint64_t failures = 0;
         for (uint64_t k = 1;; k++) {
-            test_host h;
+            culler_host h;
             session s;
-            test_host_init(&h);
-            h.fail_at = k;
-            const cull_result result = bsp_open(&s, &h, &w.z.zone, &values[o]);
+            culler_host_init(&h, 0);
+            h.memory.fail_at = k;
+            const cull_result result = bsp_open(&s, &h, &w.zone, &values[o]);
             if (result == CULL_OK) session_close(&s);
-            assert_int_equal(h.live_blocks, 0);
-            assert_int_equal(h.live_bytes, 0);
+            assert_int_equal(h.memory.live_blocks, 0);
+            assert_int_equal(h.memory.live_bytes, 0);
             if (result == CULL_OK) break;
             assert_int_equal(result, CULL_ERR_MEMORY);
             failures++;
         }
         assert_true(failures > 20);
     }
-    wall_zone_free(&w);
+    hand_zone_free(&w);
 }
 
 int main(void)

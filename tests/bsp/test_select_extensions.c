@@ -26,14 +26,14 @@ static const void *extension(const session *s, const char *id)
 }
 
 // The zone as the host lays it out behind the select.
-typedef struct ordered { test_zone z; } ordered;
+typedef struct ordered { hand_zone z; } ordered;
 
 static void order_zone(const cull_zone *zone, const uint32_t *order, ordered *out)
 {
     cull_box *boxes = calloc(zone->item_count + 1, sizeof *boxes);
     assert_non_null(boxes);
     for (uint32_t place = 0; place < zone->item_count; place++) boxes[place] = cull_box_at(&zone->boxes, order[place]);
-    test_zone_make(boxes, zone->item_count, &out->z);
+    zone_of_boxes(boxes, zone->item_count, &out->z);
     free(boxes);
 }
 
@@ -57,42 +57,42 @@ static void walk_hierarchy(const cull_hierarchy *h, const cull_volume *volume, u
 static void the_hierarchy_is_sound_and_a_filter_that_walks_it_loses_nothing(void **state)
 {
     (void)state;
-    random_state r = {51};
+    uint64_t r = {51};
     static const uint32_t counts[] = {0, 1, 9, 60, 300};
     uint64_t kept_sum = 0, needed_sum = 0;
     for (int kind = 0; kind < SCENE_KIND_COUNT; kind++)
         for (int c = 0; c < 5; c++)
             for (int f = 0; f < FORM_COUNT; f++) {
-                wall_zone w;
+                hand_zone w;
                 ordered o;
-                test_host host;
+                culler_host host;
                 session s;
                 const char *fault;
                 scene_fill(&r, (scene_kind)kind, counts[c], &w);
-                test_host_init(&host);
-                assert_int_equal(bsp_open(&s, &host, &w.z.zone, &forms[f]), CULL_OK);
+                culler_host_init(&host, 0);
+                assert_int_equal(bsp_open(&s, &host, &w.zone, &forms[f]), CULL_OK);
                 const cull_hierarchy *h = extension(&s, CULL_EXT_HIERARCHY);
-                order_zone(&w.z.zone, s.built.order, &o);
+                order_zone(&w.zone, s.built.order, &o);
                 assert_int_equal(hierarchy_check(h, &o.z.zone, allocator_heap(), &fault), RESULT_OK);
                 if (fault) fail_msg("kind %d, %u items, form %d: %s", kind, counts[c], f, fault);
                 for (int q = 0; q < 20; q++) {
                     static made_view v;
                     static uint8_t kept[ITEMS_MOST], needed[ITEMS_MOST];
-                    view_fill(&r, &w.z.zone, 1, &v);
+                    view_fill(&r, &w.zone, 1, &v);
                     memset(kept, 0, sizeof kept);
                     walk_hierarchy(h, &v.volumes[0], kept);
                     for (uint32_t k = 0; k < v.parts[0].plane_count; k++) v.parts[0].planes[k].offset -= 1e-4f; // rounding apart
-                    loop_set(&w.z.zone, &v, needed);
-                    for (uint32_t place = 0; place < w.item_count; place++) {
+                    loop_set(&w.zone, &v, needed);
+                    for (uint32_t place = 0; place < w.zone.item_count; place++) {
                         const uint32_t item = s.built.order[place];
                         assert_true(kept[place] >= needed[item]);
                         kept_sum += kept[place];
                         needed_sum += needed[item];
                     }
                 }
-                test_zone_free(&o.z);
+                hand_zone_free(&o.z);
                 session_close(&s);
-                wall_zone_free(&w);
+                hand_zone_free(&w);
             }
     assert_true(needed_sum > 10000 && kept_sum < 4 * needed_sum); // and it culls
 }
@@ -115,7 +115,7 @@ static double entry_of(const double from[3], const double to[3], cull_box box)
     return in <= out ? in : 2;
 }
 
-static void must_be_the_ray_set(const wall_zone *w, const session *s, const cull_ray *ray, cull_vec3 a, cull_vec3 b)
+static void must_be_the_ray_set(const hand_zone *w, const session *s, const cull_ray *ray, cull_vec3 a, cull_vec3 b)
 {
     static cull_run runs[ITEMS_MOST], first[ITEMS_MOST];
     const double from[3] = {(double)a.x, (double)a.y, (double)a.z}, to[3] = {(double)b.x, (double)b.y, (double)b.z};
@@ -125,12 +125,12 @@ static void must_be_the_ray_set(const wall_zone *w, const session *s, const cull
     for (uint32_t i = 0; i < count; i++)
         for (uint32_t place = runs[i].first; place < runs[i].first + runs[i].count; place++) {
             const uint32_t item = s->built.order[place];
-            const double at = entry_of(from, to, cull_box_at(&w->z.zone.boxes, item));
+            const double at = entry_of(from, to, cull_box_at(&w->zone.boxes, item));
             assert_int_equal(seen[item]++, 0);
             assert_true(at >= last); // nearest first
             last = at;
         }
-    for (uint32_t i = 0; i < w->item_count; i++) assert_int_equal(seen[i], entry_of(from, to, cull_box_at(&w->z.zone.boxes, i)) <= 1);
+    for (uint32_t i = 0; i < w->zone.item_count; i++) assert_int_equal(seen[i], entry_of(from, to, cull_box_at(&w->zone.boxes, i)) <= 1);
     for (uint32_t most = 0; most <= count && most < 6; most++) { // a short list holds the nearest
         first[most] = (cull_run){77, 77};
         assert_int_equal(ray->segment(s->culler, a, b, first, most), count);
@@ -142,15 +142,15 @@ static void must_be_the_ray_set(const wall_zone *w, const session *s, const cull
 static void a_segment_finds_the_boxes_it_touches_nearest_first(void **state)
 {
     (void)state;
-    random_state r = {52};
+    uint64_t r = {52};
     for (int kind = 0; kind < SCENE_KIND_COUNT; kind++)
         for (int f = 0; f < FORM_COUNT; f++) {
-            wall_zone w;
-            test_host h;
+            hand_zone w;
+            culler_host h;
             session s;
             scene_fill(&r, (scene_kind)kind, 200, &w);
-            test_host_init(&h);
-            assert_int_equal(bsp_open(&s, &h, &w.z.zone, &forms[f]), CULL_OK);
+            culler_host_init(&h, 0);
+            assert_int_equal(bsp_open(&s, &h, &w.zone, &forms[f]), CULL_OK);
             for (int q = 0; q < 100; q++) {
                 cull_vec3 a, b;
                 for (int k = 0; k < 3; k++) {
@@ -158,26 +158,26 @@ static void a_segment_finds_the_boxes_it_touches_nearest_first(void **state)
                     (&b.x)[k] = q % 4 == k ? (&a.x)[k] : (float)random_between(&r, -50, 50); // along an axis' plane now and then
                 }
                 if (q % 10 == 9) b = a; // a point
-                if (q % 7 == 0 && w.position_count) a = w.positions[random_next(&r) % w.position_count];
+                if (q % 7 == 0 && w.zone.position_count) a = w.positions[random_bits(&r) % w.zone.position_count];
                 must_be_the_ray_set(&w, &s, extension(&s, CULL_EXT_RAY), a, b);
             }
             session_close(&s);
-            wall_zone_free(&w);
+            hand_zone_free(&w);
         }
 }
 
 static void a_box_finds_the_boxes_it_touches(void **state)
 {
     (void)state;
-    random_state r = {53};
+    uint64_t r = {53};
     for (int kind = 0; kind < SCENE_KIND_COUNT; kind++) {
-        wall_zone w;
-        test_host h;
+        hand_zone w;
+        culler_host h;
         session s;
         static cull_run runs[ITEMS_MOST], first[ITEMS_MOST];
         scene_fill(&r, (scene_kind)kind, 200, &w);
-        test_host_init(&h);
-        assert_int_equal(bsp_open(&s, &h, &w.z.zone, &forms[0]), CULL_OK);
+        culler_host_init(&h, 0);
+        assert_int_equal(bsp_open(&s, &h, &w.zone, &forms[0]), CULL_OK);
         const cull_ray *ray = extension(&s, CULL_EXT_RAY);
         for (int q = 0; q < 100; q++) {
             cull_box box;
@@ -189,21 +189,21 @@ static void a_box_finds_the_boxes_it_touches(void **state)
             const uint32_t count = ray->box(s.culler, &box, runs, ITEMS_MOST);
             for (uint32_t i = 0; i < count; i++)
                 for (uint32_t place = runs[i].first; place < runs[i].first + runs[i].count; place++) assert_int_equal(seen[s.built.order[place]]++, 0);
-            for (uint32_t i = 0; i < w.item_count; i++) assert_int_equal(seen[i], cull_box_touches(box, cull_box_at(&w.z.zone.boxes, i)));
+            for (uint32_t i = 0; i < w.zone.item_count; i++) assert_int_equal(seen[i], cull_box_touches(box, cull_box_at(&w.zone.boxes, i)));
             first[count / 2] = (cull_run){77, 77};
             assert_int_equal(ray->box(s.culler, &box, first, count / 2), count);
             if (count / 2) assert_memory_equal(first, runs, count / 2 * sizeof *runs);
             assert_int_equal(first[count / 2].first, 77);
         }
         session_close(&s);
-        wall_zone_free(&w);
+        hand_zone_free(&w);
     }
 }
 
 // ---- Explanations ----
 
 // Returns 1 where it takes several planes to drop it.
-static uint32_t must_explain(const wall_zone *w, const session *s, const made_view *v, uint32_t place, int is_drawn)
+static uint32_t must_explain(const hand_zone *w, const session *s, const made_view *v, uint32_t place, int is_drawn)
 {
     const cull_explain *explain = extension(s, CULL_EXT_EXPLAIN);
     const cull_visit visit = {.view = &v->view, .volumes = v->volumes, .volume_count = v->volume_count, .scratch = s->scratch};
@@ -220,23 +220,23 @@ static uint32_t must_explain(const wall_zone *w, const session *s, const made_vi
     if (at) { // all of it is, and no other volume has it
         assert_int_equal(sscanf(at, "outside plane %u of volume %u", &plane, &volume), 2);
         const cull_volume one = {&v->volumes[volume].planes[plane], 1, 0};
-        assert_int_equal(item_touches(&w->z.zone, item, &one), 0);
+        assert_int_equal(item_touches(&w->zone, item, &one), 0);
     }
     at = strstr(text, "together leave nothing");
     if (at) {
         assert_int_equal(sscanf(text, "dropped: the planes of volume %u", &volume), 1);
-        assert_int_equal(item_touches(&w->z.zone, item, &v->volumes[volume]), 0);
+        assert_int_equal(item_touches(&w->zone, item, &v->volumes[volume]), 0);
         for (uint32_t k = 0; k < v->volumes[volume].plane_count; k++) { // each alone has some of it
             const cull_volume one = {&v->volumes[volume].planes[k], 1, 0};
-            assert_int_equal(item_touches(&w->z.zone, item, &one), 1);
+            assert_int_equal(item_touches(&w->zone, item, &one), 1);
         }
     }
     at = strstr(text, "is inside volume ");
     if (at && is_drawn) {
         assert_int_equal(sscanf(at, "is inside volume %u", &volume), 1);
-        assert_int_equal(item_touches(&w->z.zone, item, &v->volumes[volume]), 1);
+        assert_int_equal(item_touches(&w->zone, item, &v->volumes[volume]), 1);
     }
-    if (strstr(text, "shows only its back")) assert_true(w->flags[item] == CULL_ITEM_WALL);
+    if (strstr(text, "shows only its back")) assert_true(w->items[item].flags == CULL_ITEM_WALL);
     return strstr(text, "together leave nothing") != NULL;
 }
 
@@ -244,30 +244,30 @@ static void explain_gives_a_true_reason(void **state)
 {
     (void)state;
     const bsp_values values[] = {{"0", "0", "balance", "off", "auto"}, {"1", "0", "balance", "off", "auto"}, {"1", "0", "balance", "exact", "auto"}};
-    random_state r = {54};
+    uint64_t r = {54};
     uint32_t together = 0;
     for (int kind = 0; kind < SCENE_KIND_COUNT; kind++)
         for (int o = 0; o < 3; o++) {
-            wall_zone w;
-            test_host h;
+            hand_zone w;
+            culler_host h;
             session s;
             scene_fill(&r, (scene_kind)kind, 100, &w);
-            test_host_init(&h);
-            assert_int_equal(bsp_open(&s, &h, &w.z.zone, &values[o]), CULL_OK);
+            culler_host_init(&h, 0);
+            assert_int_equal(bsp_open(&s, &h, &w.zone, &values[o]), CULL_OK);
             for (int q = 0; q < 12; q++) {
                 static made_view v;
                 static uint8_t seen[ITEMS_MOST];
-                view_fill(&r, &w.z.zone, (uint32_t)q % 4, &v);
+                view_fill(&r, &w.zone, (uint32_t)q % 4, &v);
                 session_select(&s, &v.view, v.volumes, v.volume_count);
                 assert_null(select_set(&s, seen));
-                for (uint32_t place = 0; place < w.item_count; place++) together += must_explain(&w, &s, &v, place, seen[s.built.order[place]]);
+                for (uint32_t place = 0; place < w.zone.item_count; place++) together += must_explain(&w, &s, &v, place, seen[s.built.order[place]]);
             }
             char text[64];
             const cull_visit none = {.scratch = s.scratch};
-            ((const cull_explain *)extension(&s, CULL_EXT_EXPLAIN))->item(s.query, &none, w.item_count, text, sizeof text);
+            ((const cull_explain *)extension(&s, CULL_EXT_EXPLAIN))->item(s.query, &none, w.zone.item_count, text, sizeof text);
             assert_string_equal(text, "there is no item 100");
             session_close(&s);
-            wall_zone_free(&w);
+            hand_zone_free(&w);
         }
     assert_true(together > 4);
 }
@@ -286,15 +286,15 @@ static double figure(const session *s, const char *name)
 static void figures_tell_of_the_tree(void **state)
 {
     (void)state;
-    random_state r = {55};
-    wall_zone w;
-    test_host h;
+    uint64_t r = {55};
+    hand_zone w;
+    culler_host h;
     session s[2];
     const bsp_values values[] = {{"0", "0", "balance", "off", "auto"}, {"0", "0", "balance", "rect", "auto"}};
     scene_fill(&r, SCENE_ROOMS, 120, &w);
-    test_host_init(&h);
+    culler_host_init(&h, 0);
     for (int i = 0; i < 2; i++) {
-        assert_int_equal(bsp_open(&s[i], &h, &w.z.zone, &values[i]), CULL_OK);
+        assert_int_equal(bsp_open(&s[i], &h, &w.zone, &values[i]), CULL_OK);
         assert_true(figure(&s[i], "leaves") == figure(&s[i], "nodes") + 1); // a binary tree
         assert_true(figure(&s[i], "listings") >= 120 + figure(&s[i], "items_spanning"));
         assert_true(figure(&s[i], "depth") >= 6 && figure(&s[i], "depth") <= figure(&s[i], "nodes") + 1);
@@ -303,13 +303,13 @@ static void figures_tell_of_the_tree(void **state)
     assert_true(figure(&s[1], "cells") >= figure(&s[1], "leaves"));
     assert_true(figure(&s[1], "openings") > 0);
     for (int i = 0; i < 2; i++) session_close(&s[i]);
-    wall_zone_free(&w);
+    hand_zone_free(&w);
 }
 
 // ---- The baked index ----
 
 typedef struct baked_host {
-    test_host h;
+    culler_host h;
     const cull_zone *zone;
     cull_blob blob;
 } baked_host;
@@ -323,47 +323,47 @@ static const void *lend_blob(const cull_host *host, const cull_zone *zone, const
 static void a_baked_index_finds_the_same_and_a_damaged_one_is_refused(void **state)
 {
     (void)state;
-    random_state r = {56};
+    uint64_t r = {56};
     for (int f = 0; f < FORM_COUNT; f++) {
-        wall_zone w;
+        hand_zone w;
         static baked_host b;
         session built, loaded, damaged;
         scene_fill(&r, SCENE_MIXED, 120, &w);
-        test_host_init(&b.h);
+        culler_host_init(&b.h, 0);
         b.h.host.get_extension = lend_blob;
-        b.zone = &w.z.zone;
+        b.zone = &w.zone;
         b.blob = (cull_blob){NULL, 0};
-        assert_int_equal(bsp_open(&built, &b.h, &w.z.zone, &forms[f]), CULL_OK);
+        assert_int_equal(bsp_open(&built, &b.h, &w.zone, &forms[f]), CULL_OK);
         const cull_bake *bake = extension(&built, CULL_EXT_BAKE);
         const uint64_t size = bake->save(built.culler, NULL, 0);
         uint8_t *bytes = aligned_alloc(64, (size_t)(size + 63) / 64 * 64);
         assert_non_null(bytes);
         assert_int_equal(bake->save(built.culler, bytes, size), size);
         b.blob = (cull_blob){bytes, size};
-        assert_int_equal(bsp_open(&loaded, &b.h, &w.z.zone, &forms[f]), CULL_OK);
-        assert_memory_equal(built.built.order, loaded.built.order, w.item_count * sizeof(uint32_t));
+        assert_int_equal(bsp_open(&loaded, &b.h, &w.zone, &forms[f]), CULL_OK);
+        assert_memory_equal(built.built.order, loaded.built.order, w.zone.item_count * sizeof(uint32_t));
         for (int q = 0; q < 20; q++) {
             static made_view v;
-            view_fill(&r, &w.z.zone, 2, &v);
+            view_fill(&r, &w.zone, 2, &v);
             session_select(&built, &v.view, v.volumes, 2);
             session_select(&loaded, &v.view, v.volumes, 2);
             assert_int_equal(built.run_count, loaded.run_count);
             if (built.run_count) assert_memory_equal(built.runs, loaded.runs, built.run_count * sizeof(cull_run));
         }
         for (int q = 0; q < 40; q++) {
-            const uint64_t at = random_next(&r) % size;
-            const uint8_t bit = (uint8_t)(1u << random_next(&r) % 8);
+            const uint64_t at = random_bits(&r) % size;
+            const uint8_t bit = (uint8_t)(1u << random_bits(&r) % 8);
             bytes[at] ^= bit;
-            const int64_t blocks = b.h.live_blocks;
-            assert_int_equal(bsp_open(&damaged, &b.h, &w.z.zone, &forms[f]), CULL_ERR_BLOB);
-            assert_int_equal(b.h.live_blocks, blocks);
+            const uint64_t blocks = b.h.memory.live_blocks;
+            assert_int_equal(bsp_open(&damaged, &b.h, &w.zone, &forms[f]), CULL_ERR_BLOB);
+            assert_int_equal(b.h.memory.live_blocks, blocks);
             bytes[at] ^= bit;
         }
         session_close(&built);
         session_close(&loaded);
-        assert_int_equal(b.h.live_blocks, 0);
+        assert_int_equal(b.h.memory.live_blocks, 0);
         free(bytes);
-        wall_zone_free(&w);
+        hand_zone_free(&w);
     }
 }
 

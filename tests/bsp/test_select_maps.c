@@ -41,31 +41,31 @@ static void check_hierarchy(const cull_zone *zone, const session *s)
 {
     const cull_hierarchy *h = s->plugin->get_extension(s->culler, CULL_EXT_HIERARCHY);
     cull_box *boxes = calloc(zone->item_count + 1, sizeof *boxes);
-    test_zone ordered;
+    hand_zone ordered;
     const char *fault;
     assert_non_null(boxes);
     for (uint32_t place = 0; place < zone->item_count; place++) boxes[place] = cull_box_at(&zone->boxes, s->built.order[place]);
-    test_zone_make(boxes, zone->item_count, &ordered);
+    zone_of_boxes(boxes, zone->item_count, &ordered);
     assert_int_equal(hierarchy_check(h, &ordered.zone, allocator_heap(), &fault), RESULT_OK);
     if (fault) fail_msg("%s", fault);
-    test_zone_free(&ordered);
+    hand_zone_free(&ordered);
     free(boxes);
 }
 
-static uint32_t check_zone(random_state *r, const cull_zone *zone, uint32_t views)
+static uint32_t check_zone(uint64_t *r, const cull_zone *zone, uint32_t views)
 {
     static const char *const of_frustum[] = {"1", "auto"};
     static const bsp_values values = {"1", "0", "balance", "off", "auto"};
     const cull_plugin *frustum = plugin_named("frustum");
     zone_sessions s;
-    test_host h;
+    culler_host h;
     zone_sets sets;
     uint8_t *bytes = calloc((size_t)zone->item_count + 1, 4);
     uint32_t found = 0;
     assert_non_null(frustum);
     assert_non_null(bytes);
     sets = (zone_sets){bytes, bytes + zone->item_count, bytes + 2 * zone->item_count, bytes + 3 * zone->item_count};
-    test_host_init(&h);
+    culler_host_init(&h, 0);
     assert_int_equal(bsp_open(&s.bsp, &h, zone, &values), CULL_OK);
     assert_int_equal(session_open(&s.frustum, &h, frustum, zone, of_frustum), CULL_OK);
     check_hierarchy(zone, &s.bsp);
@@ -76,7 +76,7 @@ static uint32_t check_zone(random_state *r, const cull_zone *zone, uint32_t view
     }
     session_close(&s.bsp);
     session_close(&s.frustum);
-    assert_int_equal(h.live_blocks, 0);
+    assert_int_equal(h.memory.live_blocks, 0);
     free(bytes);
     return found;
 }
@@ -84,7 +84,7 @@ static uint32_t check_zone(random_state *r, const cull_zone *zone, uint32_t view
 static void on_map(const char *name, portal_choice portals, uint32_t views)
 {
     cells_map map;
-    random_state r = {61};
+    uint64_t r = {61};
     uint32_t found = 0;
     if (!cells_map_open(name, portals, &map)) skip();
     for (uint32_t z = 0; z < map.whole.scene->zone_count; z++) found += check_zone(&r, &map.zones[z].zone, views);

@@ -127,7 +127,7 @@ static void step_point(const grid_cells *g, const flow_view *v, const double way
 static uint32_t portal_of(const grid_cells *g, uint32_t room)
 {
     uint32_t p = 0;
-    while (p < g->zone.portal_count && g->data.portal_cells[p] != room) p++;
+    while (p < g->zone.portal_count && g->data.stands[p].cell != room) p++;
     assert_true(p < g->zone.portal_count);
     return p;
 }

@@ -10,11 +10,11 @@
 
 enum { HEAD_BYTES = 80, CHECK_AT = 72 }; // bake.c
 
-static void scene_make(made_zone *zone, uint64_t seed)
+static void scene_make(hand_zone *zone, uint64_t seed)
 {
     scene_of_boxes(&(box_scene){4, 32, 16, seed}, zone);
-    made_zone_cluster(zone, (cull_box){{-1, -1, -1}, {1, 1, 1}});
-    made_zone_close(zone, ZONE_EXACT);
+    hand_zone_cluster(zone, (cull_box){{-1, -1, -1}, {1, 1, 1}});
+    grid_end(zone, ZONE_EXACT);
 }
 
 static void *saved(const bsp_tree *tree, uint64_t *size)
@@ -45,8 +45,8 @@ static void a_tree_comes_back_from_its_bytes_to_the_last_bit(void **state)
 {
     (void)state;
     for (uint32_t seed = 1; seed <= 9; seed++) {
-        made_zone zone;
-        tree_host host, other;
+        hand_zone zone;
+        culler_host host, other;
         bsp_tree tree, back;
         uint64_t size;
         const bsp_wish wish = {(bsp_split)(seed % 3), (bsp_choose)(seed / 3 % 3), seed % 2 ? 0 : 3, 0};
@@ -55,24 +55,24 @@ static void a_tree_comes_back_from_its_bytes_to_the_last_bit(void **state)
         void *bytes = saved(&tree, &size);
         const cull_blob blob = {bytes, size};
         const bsp_source from = {&zone.zone, &blob, wish};
-        tree_host_init(&other, 0);
+        culler_host_init(&other, 0);
         assert_int_equal(bsp_tree_build(&other.host, &from, &back), CULL_OK);
         assert_no_fault(tree_fault(&zone.zone, &back));
         assert_same_tree(&tree, &back);
         tree_end(&other, &back);
         tree_end(&host, &tree);
         free(bytes);
-        made_zone_free(&zone);
+        hand_zone_free(&zone);
     }
 }
 
-static cull_result load(const made_zone *zone, const void *bytes, uint64_t size, bsp_wish wish)
+static cull_result load(const hand_zone *zone, const void *bytes, uint64_t size, bsp_wish wish)
 {
-    tree_host host;
+    culler_host host;
     bsp_tree tree;
     const cull_blob blob = {bytes, size};
     const bsp_source from = {&zone->zone, &blob, wish};
-    tree_host_init(&host, 0);
+    culler_host_init(&host, 0);
     const cull_result result = bsp_tree_build(&host.host, &from, &tree);
     if (result == CULL_OK) bsp_tree_free(&host.host, &tree);
     else assert_int_equal(host.lines, 1);
@@ -83,8 +83,8 @@ static cull_result load(const made_zone *zone, const void *bytes, uint64_t size,
 static void bytes_of_another_zone_or_wish_or_length_are_refused(void **state)
 {
     (void)state;
-    made_zone zone, other;
-    tree_host host;
+    hand_zone zone, other;
+    culler_host host;
     bsp_tree tree;
     uint64_t size;
     const bsp_wish wish = {BSP_WHOLE, BSP_BALANCE, 0, 0};
@@ -106,15 +106,15 @@ static void bytes_of_another_zone_or_wish_or_length_are_refused(void **state)
     }
     tree_end(&host, &tree);
     free(bytes);
-    made_zone_free(&zone);
-    made_zone_free(&other);
+    hand_zone_free(&zone);
+    hand_zone_free(&other);
 }
 
 static void any_byte_changed_is_noticed(void **state)
 {
     (void)state;
-    made_zone zone;
-    tree_host host;
+    hand_zone zone;
+    culler_host host;
     bsp_tree tree;
     uint64_t size;
     const bsp_wish wish = {BSP_SPLIT_NODES, BSP_BALANCE, 0, 0};
@@ -130,7 +130,7 @@ static void any_byte_changed_is_noticed(void **state)
     }
     tree_end(&host, &tree);
     free(bytes);
-    made_zone_free(&zone);
+    hand_zone_free(&zone);
 }
 
 static void sign(char *bytes, uint64_t size)
@@ -147,16 +147,16 @@ static void sign(char *bytes, uint64_t size)
 static void signed_bytes_that_name_one_thing_twice_are_refused(void **state)
 {
     (void)state;
-    made_zone zone;
-    tree_host host;
+    hand_zone zone;
+    culler_host host;
     bsp_tree tree;
     uint64_t size;
     const bsp_wish wish = {BSP_WHOLE, BSP_BALANCE, 0, 0};
     const grid_loop front = {{{0, 0, 0}, {64, 0, 0}, {64, 64, 0}, {0, 64, 0}}, 4}, back = {{{0, 64, 0}, {64, 64, 0}, {64, 0, 0}, {0, 0, 0}}, 4};
-    made_zone_open(&zone, 4, 16);
-    for (int i = 0; i < 2; i++) made_zone_wall(&zone, &front); // alike but for their numbers
-    for (int i = 0; i < 2; i++) made_zone_wall(&zone, &back);
-    made_zone_close(&zone, ZONE_EXACT);
+    hand_zone_open(&zone, 4, 16);
+    for (int i = 0; i < 2; i++) grid_wall(&zone, &front); // alike but for their numbers
+    for (int i = 0; i < 2; i++) grid_wall(&zone, &back);
+    grid_end(&zone, ZONE_EXACT);
     tree_of(&zone, wish, &host, &tree);
     assert_int_equal(tree.leaf_count, 2);
     char *bytes = saved(&tree, &size);
@@ -174,7 +174,7 @@ static void signed_bytes_that_name_one_thing_twice_are_refused(void **state)
     assert_int_equal(load(&zone, bytes, size, wish), CULL_ERR_BLOB); // one leaf on both sides
     free(bytes);
     tree_end(&host, &tree);
-    made_zone_free(&zone);
+    hand_zone_free(&zone);
 }
 
 static uint32_t read_all(const bsp_tree *t) // by the ways that a walk would take: out of bounds shows under a sanitizer
@@ -202,8 +202,8 @@ static uint32_t read_all(const bsp_tree *t) // by the ways that a walk would tak
 static void signed_bytes_of_any_content_are_refused_or_a_tree_that_can_be_walked(void **state)
 {
     (void)state;
-    made_zone zone;
-    tree_host host;
+    hand_zone zone;
+    culler_host host;
     bsp_tree tree;
     uint64_t size, seed = 11;
     uint32_t refused = 0, taken = 0;
@@ -224,11 +224,11 @@ static void signed_bytes_of_any_content_are_refused_or_a_tree_that_can_be_walked
             memcpy(bytes + at, &word, 4);
         }
         sign(bytes, size);
-        tree_host own;
+        culler_host own;
         bsp_tree back;
         const cull_blob blob = {bytes, size};
         const bsp_source from = {&zone.zone, &blob, wish};
-        tree_host_init(&own, 0);
+        culler_host_init(&own, 0);
         const cull_result result = bsp_tree_build(&own.host, &from, &back);
         if (result == CULL_OK) {
             taken += read_all(&back) != 0xffffffff;
@@ -241,7 +241,7 @@ static void signed_bytes_of_any_content_are_refused_or_a_tree_that_can_be_walked
     tree_end(&host, &tree);
     free(good);
     free(bytes);
-    made_zone_free(&zone);
+    hand_zone_free(&zone);
 }
 
 // By every compiler: the tree of 60 triangles that cross each other.
@@ -250,12 +250,12 @@ static void the_bytes_of_a_tree_are_the_same_on_every_machine(void **state)
     (void)state;
     static const uint64_t known[3] = {0x154d1d8b16bbb214u, 0x94d7ffa1229ff4c7u, 0xd6874cac32ee27c0u};
     for (int i = 0; i < 3; i++) {
-        made_zone zone;
-        tree_host host;
+        hand_zone zone;
+        culler_host host;
         bsp_tree tree;
         uint64_t size, hash = 0xcbf29ce484222325u;
         scene_of_polygons(60, 5, &zone);
-        made_zone_close(&zone, ZONE_FLOAT);
+        grid_end(&zone, ZONE_FLOAT);
         tree_of(&zone, (bsp_wish){BSP_WHOLE, (bsp_choose)i, 0, 0}, &host, &tree);
         unsigned char *bytes = saved(&tree, &size);
         for (uint64_t b = 0; b < size; b++) hash = (hash ^ bytes[b]) * 0x100000001b3u;
@@ -263,15 +263,15 @@ static void the_bytes_of_a_tree_are_the_same_on_every_machine(void **state)
         assert_true(hash == known[i]);
         free(bytes);
         tree_end(&host, &tree);
-        made_zone_free(&zone);
+        hand_zone_free(&zone);
     }
 }
 
 static void whichever_allocation_fails_while_loading_nothing_is_left(void **state)
 {
     (void)state;
-    made_zone zone;
-    tree_host host;
+    hand_zone zone;
+    culler_host host;
     bsp_tree tree;
     uint64_t size, fail_at = 0;
     const bsp_wish wish = {BSP_WHOLE, BSP_BALANCE, 0, 0};
@@ -281,9 +281,9 @@ static void whichever_allocation_fails_while_loading_nothing_is_left(void **stat
     const cull_blob blob = {bytes, size};
     const bsp_source from = {&zone.zone, &blob, wish};
     for (cull_result result = CULL_ERR_MEMORY; result != CULL_OK;) {
-        tree_host own;
+        culler_host own;
         bsp_tree back;
-        tree_host_init(&own, ++fail_at);
+        culler_host_init(&own, ++fail_at);
         result = bsp_tree_build(&own.host, &from, &back);
         if (result == CULL_OK) bsp_tree_free(&own.host, &back);
         else assert_int_equal(result, CULL_ERR_MEMORY);
@@ -292,7 +292,7 @@ static void whichever_allocation_fails_while_loading_nothing_is_left(void **stat
     assert_true(fail_at > 10);
     tree_end(&host, &tree);
     free(bytes);
-    made_zone_free(&zone);
+    hand_zone_free(&zone);
 }
 
 int main(void)

@@ -74,12 +74,12 @@ static void the_first_plane_is_the_one_that_the_rule_finds_over_all(void **state
     (void)state;
     uint32_t divided = 0;
     for (uint32_t seed = 1; seed <= 60; seed++) {
-        made_zone zone;
-        tree_host host;
+        hand_zone zone;
+        culler_host host;
         bsp_tree tree;
         if (seed % 2) scene_of_polygons(3 + seed, seed, &zone);
         else scene_of_boxes(&(box_scene){1 + seed % 8, 16, 14, seed}, &zone);
-        made_zone_close(&zone, ZONE_EXACT);
+        grid_end(&zone, ZONE_EXACT);
         tree_of(&zone, (bsp_wish){BSP_WHOLE, BSP_BALANCE, 0, 0}, &host, &tree);
         const division best = best_division(&zone.zone);
         assert_int_equal(tree.node_count > 0, best.back > 0);
@@ -90,7 +90,7 @@ static void the_first_plane_is_the_one_that_the_rule_finds_over_all(void **state
             divided++;
         }
         tree_end(&host, &tree);
-        made_zone_free(&zone);
+        hand_zone_free(&zone);
     }
     assert_true(divided > 50);
 }
@@ -112,15 +112,15 @@ static void by_surface_area_the_tree_costs_a_line_less_than_by_the_first_plane(v
     double first = 0, sah = 0;
     for (uint32_t seed = 1; seed <= 10; seed++) {
         for (int i = 0; i < 2; i++) {
-            made_zone zone;
-            tree_host host;
+            hand_zone zone;
+            culler_host host;
             bsp_tree tree;
             scene_of_boxes(&(box_scene){60, 16, 40, seed}, &zone);
-            made_zone_close(&zone, ZONE_EXACT);
+            grid_end(&zone, ZONE_EXACT);
             tree_of(&zone, (bsp_wish){BSP_WHOLE, i ? BSP_SAH : BSP_FIRST, 0, 0}, &host, &tree);
             *(i ? &sah : &first) += cost_of(&tree);
             tree_end(&host, &tree);
-            made_zone_free(&zone);
+            hand_zone_free(&zone);
         }
     }
     assert_true(sah < 0.8 * first);
@@ -128,11 +128,11 @@ static void by_surface_area_the_tree_costs_a_line_less_than_by_the_first_plane(v
 
 // ---- How the work grows: pieces held against planes, not time ----
 
-static uint64_t work_of(const made_zone *zone, bsp_wish wish, bsp_tree *figures)
+static uint64_t work_of(const hand_zone *zone, bsp_wish wish, bsp_tree *figures)
 {
-    tree_host host;
+    culler_host host;
     bsp_tree tree;
-    tree_host_init(&host, 0);
+    culler_host_init(&host, 0);
     const bsp_source from = {&zone->zone, NULL, wish};
     assert_int_equal(bsp_tree_build(&host.host, &from, &tree), CULL_OK);
     *figures = tree;
@@ -147,11 +147,11 @@ static void to_100000_polygons_the_work_grows_as_n_log_n(void **state)
     for (int c = 0; c < 2; c++) {
         double before = 0;
         for (uint32_t boxes = 1041; boxes <= (choices[c] == BSP_SAH ? 4164u : 16666u); boxes *= 4) {
-            made_zone zone;
+            hand_zone zone;
             bsp_tree figures;
             const int32_t room = (int32_t)(14 * cbrt((double)boxes)); // as dense at every size
             scene_of_boxes(&(box_scene){boxes, 16, room, boxes}, &zone);
-            made_zone_close(&zone, ZONE_EXACT);
+            grid_end(&zone, ZONE_EXACT);
             const double n = zone.zone.item_count, each = (double)work_of(&zone, (bsp_wish){BSP_WHOLE, choices[c], 0, 0}, &figures) / (n * log2(n));
             print_message("%.0f walls: %.1f tests a wall and level, depth %u, %u nodes, %u cuts, %u bent leaves\n", n, each, figures.depth,
                           figures.node_count, figures.splits, figures.bent_leaves);
@@ -160,7 +160,7 @@ static void to_100000_polygons_the_work_grows_as_n_log_n(void **state)
             assert_true(each < 128);
             if (before > 0) assert_true(each < 1.4 * before);
             before = each;
-            made_zone_free(&zone);
+            hand_zone_free(&zone);
         }
     }
 }
@@ -168,33 +168,33 @@ static void to_100000_polygons_the_work_grows_as_n_log_n(void **state)
 static void ten_thousand_coincident_polygons_are_one_leaf_in_one_pass(void **state)
 {
     (void)state;
-    made_zone zone;
+    hand_zone zone;
     bsp_tree figures;
     const grid_loop loop = {{{0, 0, 0}, {64, 0, 0}, {64, 64, 0}, {0, 64, 0}}, 4};
-    made_zone_open(&zone, 10000, 40000);
-    for (int i = 0; i < 10000; i++) made_zone_wall(&zone, &loop);
+    hand_zone_open(&zone, 10000, 40000);
+    for (int i = 0; i < 10000; i++) grid_wall(&zone, &loop);
     for (int kind = 0; kind < 2; kind++) {
-        made_zone_close(&zone, kind ? ZONE_FLOAT : ZONE_EXACT);
+        grid_end(&zone, kind ? ZONE_FLOAT : ZONE_EXACT);
         assert_true(work_of(&zone, (bsp_wish){BSP_WHOLE, BSP_BALANCE, 0, 0}, &figures) <= 20000);
         assert_int_equal(figures.leaf_count, 1);
         assert_int_equal(figures.entry_count, 10000);
     }
-    made_zone_free(&zone);
+    hand_zone_free(&zone);
 }
 
 static void a_column_of_thousands_of_walls_stays_within_the_depth_and_the_work(void **state)
 {
     (void)state;
     for (int faces = 0; faces < 2; faces++) {
-        made_zone zone;
+        hand_zone zone;
         bsp_tree figures;
-        scene_of_column(8000, faces ? BOX_INWARD : BOX_OUTWARD, &zone);
-        made_zone_close(&zone, ZONE_EXACT);
+        scene_of_column(8000, faces ? FACE_IN : FACE_OUT, &zone);
+        grid_end(&zone, ZONE_EXACT);
         const double n = zone.zone.item_count, work = (double)work_of(&zone, (bsp_wish){BSP_WHOLE, BSP_BALANCE, 0, 0}, &figures);
         assert_true(figures.depth <= 512);
         assert_true(work < 10000 * n);
         if (faces) assert_int_equal(figures.leaf_count, 1); // a room: convex
-        made_zone_free(&zone);
+        hand_zone_free(&zone);
     }
 }
 

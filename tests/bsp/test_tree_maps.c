@@ -32,10 +32,10 @@ static void check_zone(const scene *s, uint32_t zone)
     zone_data data;
     assert_int_equal(zone_data_open(&(zone_data_request){s, zone, 0}, allocator_heap(), &data), RESULT_OK);
     for (int i = 0; i < 4; i++) {
-        tree_host host;
+        culler_host host;
         bsp_tree tree;
         const bsp_source from = {&data.zone, NULL, wishes[i]};
-        tree_host_init(&host, 0);
+        culler_host_init(&host, 0);
         assert_int_equal(bsp_tree_build(&host.host, &from, &tree), CULL_OK);
         assert_no_fault(tree_fault(&data.zone, &tree));
         assert_int_equal(tree.bent_leaves, 0);

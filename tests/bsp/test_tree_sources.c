@@ -11,21 +11,21 @@ enum { METRE = STEPS_PER_METRE, HEIGHT = 3 * METRE };
 typedef struct plan_wall { const char *name; double from[2], to[2]; } plan_wall; // faces to the left of its way; metres
 
 typedef struct built_plan {
-    made_zone zone;
-    tree_host host;
+    hand_zone zone;
+    culler_host host;
     bsp_tree tree;
 } built_plan;
 
 static void plan_build(const plan_wall *walls, uint32_t count, bsp_wish wish, built_plan *out)
 {
-    made_zone_open(&out->zone, count, count * 4);
+    hand_zone_open(&out->zone, count, count * 4);
     for (uint32_t i = 0; i < count; i++) {
         const int32_t w[4] = {(int32_t)(walls[i].from[0] * METRE), (int32_t)(walls[i].from[1] * METRE), (int32_t)(walls[i].to[0] * METRE),
                               (int32_t)(walls[i].to[1] * METRE)};
-        made_zone_plan(&out->zone, w, HEIGHT);
+        grid_plan(&out->zone, w, HEIGHT);
     }
-    made_zone_close(&out->zone, ZONE_EXACT);
-    tree_host_init(&out->host, 0);
+    grid_end(&out->zone, ZONE_EXACT);
+    culler_host_init(&out->host, 0);
     const bsp_source from = {&out->zone.zone, NULL, wish};
     assert_int_equal(bsp_tree_build(&out->host.host, &from, &out->tree), CULL_OK);
     const char *fault = tree_fault(&out->zone.zone, &out->tree);
@@ -36,7 +36,7 @@ static void plan_free(built_plan *p)
 {
     bsp_tree_free(&p->host.host, &p->tree);
     assert_true(failing_allocator_is_clean(&p->host.memory));
-    made_zone_free(&p->zone);
+    hand_zone_free(&p->zone);
 }
 
 // Some wall of the plane, or BSP_NONE.

@@ -283,6 +283,54 @@ static void halves_join_and_windows_apart_do_not(void **state)
     assert_true(joined > 3000);
 }
 
+// Beside a square stands a lower rectangle: the hull wastes the triangle above it, (1 - h) / 2 of (3 + h) / 2.
+static void windows_join_as_long_as_their_hull_wastes_no_more_than_is_to_spare(void **state)
+{
+    uint64_t random = 7;
+    uint32_t joined = 0, apart = 0;
+    (void)state;
+    for (int i = 0; i < 5000; i++) {
+        const double spare = random_between(&random, 0.001, 0.2), h = random_between(&random, 0.3, 1), over = random_between(&random, 0, 0.2);
+        const double waste = (1 - h) / (3 + h);
+        window square, low, both;
+        window_set_rectangle((window_bounds){0, 1, 0, 1}, &square);
+        window_set_rectangle((window_bounds){1 - over, 2, 0, h}, &low); // what overlaps is counted once
+        if (fabs(waste - spare) < 1e-6) continue;
+        const int is_joined = i % 2 ? window_join(&square, &low, spare, &both) : window_join(&low, &square, spare, &both);
+        assert_int_equal(is_joined, waste < spare);
+        if (is_joined) check_hull(&square, &low, &both);
+        joined += is_joined != 0;
+        apart += is_joined == 0;
+    }
+    assert_true(joined > 500 && apart > 500);
+}
+
+static void edges_that_have_a_point_outside_are_those_that_turn_away_from_it(void **state)
+{
+    uint64_t random = 8;
+    uint32_t told = 0;
+    (void)state;
+    for (int i = 0; i < 20000; i++) {
+        window w;
+        loop l = {.count = 0};
+        random_window(&random, &w);
+        l.count = w.count;
+        memcpy(l.u, w.u, w.count * sizeof *w.u), memcpy(l.v, w.v, w.count * sizeof *w.v);
+        loop_close(&l);
+        const uint32_t at = random_below(&random, w.count);
+        const double along = i % 3 ? random_between(&random, -1, 2) : 0; // on an edge's line, give or take a step, or at a corner
+        const loop_point p = {rint((l.u[at] + along * (l.u[at + 1] - l.u[at])) / STEP) * STEP, rint((l.v[at] + along * (l.v[at + 1] - l.v[at])) / STEP) * STEP};
+        const uint64_t out = loop_sides_out(&l, p);
+        for (uint32_t k = 0; k < l.count; k++) {
+            const int turn = loop_turn((loop_point){l.u[k], l.v[k]}, (loop_point){l.u[k + 1], l.v[k + 1]}, p);
+            assert_int_equal(out >> k & 1, turn < 0);
+            told += turn < 0;
+        }
+        assert_int_equal(out >> l.count, 0);
+    }
+    assert_true(told > 5000);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -295,6 +343,8 @@ int main(void)
         cmocka_unit_test(a_hull_holds_both_and_has_only_their_corners),
         cmocka_unit_test(corners_a_step_beside_an_upright_border_stay_in_the_hull),
         cmocka_unit_test(halves_join_and_windows_apart_do_not),
+        cmocka_unit_test(windows_join_as_long_as_their_hull_wastes_no_more_than_is_to_spare),
+        cmocka_unit_test(edges_that_have_a_point_outside_are_those_that_turn_away_from_it),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -307,7 +307,7 @@ static void check_pictures(sight *x, uint32_t wanted)
                              .services = &x->stage->services,
                              .width_px = WIDTH,
                              .height_px = HEIGHT,
-                             .repeat = 1};
+                             .samples = 1, .repeat = 1};
     const result done = bench_run(&q, &r, &found);
     if (done == RESULT_OK) {
         for (int c = 0; c < CHAINS; ++c) {

@@ -219,9 +219,16 @@ static cull_crossing mixed(void *user, uint32_t zone, const cull_view *view, con
     return zone % 2 ? CULL_CROSS_SAME : narrow(user, zone, view, in, portal, planes, plane_count);
 }
 
+static int always(void *user, uint32_t zone)
+{
+    (void)user;
+    (void)zone;
+    return 1;
+}
+
 flow_crosser maze_crosser(maze *m, crosser_kind kind)
 {
-    return (flow_crosser){m, kind == CROSSER_FLOOD ? NULL : kind == CROSSER_NARROW ? narrow : mixed, NULL};
+    return (flow_crosser){m, kind == CROSSER_FLOOD ? NULL : kind == CROSSER_MIXED ? mixed : narrow, NULL, kind == CROSSER_BY_ENTRY ? always : NULL};
 }
 
 camera maze_camera(const maze *m, const double eye[3], const double forward[3], double fovy_deg)

@@ -40,7 +40,8 @@ void maze_piece(maze *m, const double at[3]); // a small triangle, so that the z
 void maze_end(maze *m);                       // scene, graph, zone data, flow
 void maze_close(maze *m);                     // asserts that nothing is left
 
-typedef enum crosser_kind { CROSSER_FLOOD, CROSSER_NARROW, CROSSER_MIXED } crosser_kind; // mixed: every other zone floods
+// Mixed: every other zone floods. By entry: narrows, and volumes that came in different ways stay apart.
+typedef enum crosser_kind { CROSSER_FLOOD, CROSSER_NARROW, CROSSER_MIXED, CROSSER_BY_ENTRY } crosser_kind;
 flow_crosser maze_crosser(maze *m, crosser_kind kind);
 camera maze_camera(const maze *m, const double eye[3], const double forward[3], double fovy_deg); // in the maze's own frame
 void maze_run(maze *m, const camera *c, crosser_kind kind, flow_result *out); // a picture of 320 by 240

@@ -104,7 +104,7 @@ static step next_portal(const oracle_request *q, uint32_t zone, const ray *r, do
     return best;
 }
 
-typedef struct trace { uint32_t zones[64]; double starts[65]; uint32_t count; } trace;
+typedef struct trace { uint32_t zones[64], ways[64]; double starts[65]; uint32_t count; } trace; // ways: into the zone; SCENE_NONE: it starts there
 
 // Through which zones the ray goes. starts[i] .. starts[i + 1] lies in zones[i].
 static void follow(const oracle_request *q, uint32_t zone, const ray *r, trace *out)
@@ -112,14 +112,17 @@ static void follow(const oracle_request *q, uint32_t zone, const ray *r, trace *
     const double seam = SEAM_M / sqrt(dot(r->along, r->along));
     out->count = 0;
     double start = 0;
+    uint32_t way = SCENE_NONE;
     while (out->count < 64) {
         const double end = zone_end(q->scene, zone, r, start, seam);
         const step next = next_portal(q, zone, r, fmax(start - seam, 0), end + seam);
         out->zones[out->count] = zone;
+        out->ways[out->count] = way;
         out->starts[out->count++] = start;
         out->starts[out->count] = fmax(next.way == SCENE_NONE ? end : next.t, start); // never back, where faces are off by a seam
         if (next.way == SCENE_NONE) return;
-        zone = q->scene->portals[next.way / 2].zones[1 - next.way % 2];
+        way = next.way;
+        zone = q->scene->portals[way / 2].zones[1 - way % 2];
         start = out->starts[out->count];
     }
 }
@@ -130,15 +133,23 @@ static int is_in_rectangle(const flow_volume *v, const float p[2])
     return v->rectangle[0] <= p[0] && p[0] <= v->rectangle[2] && v->rectangle[1] <= p[1] && p[1] <= v->rectangle[3];
 }
 
-static int is_seen(const oracle_request *q, uint32_t zone, const float p[3], const float picture[2])
+// It does not say that all of it came in another way.
+static int may_enter(const scene *s, const flow_volume *v, uint32_t way)
+{
+    return v->volume.entry == 0 || (s->zone_portals[s->zones[v->zone].first_portal + v->volume.entry - 1] ^ 1) == way;
+}
+
+typedef struct target { uint32_t zone, way; float at[3], picture[2]; } target;
+
+static int is_seen(const oracle_request *q, const target *p)
 {
     const flow_result *f = q->result;
+    const cull_vec3 at = {p->at[0], p->at[1], p->at[2]};
     for (uint32_t i = 0; i < f->zone_count; i++) {
-        if (f->zones[i].zone != zone) continue;
+        if (f->zones[i].zone != p->zone) continue;
         for (uint32_t k = 0; k < f->zones[i].count; k++) {
             const flow_volume *v = &f->volumes[f->by_zone[f->zones[i].first + k]];
-            const cull_vec3 at = {p[0], p[1], p[2]};
-            if (is_in_rectangle(v, picture) && cull_volume_touches(&v->volume, (cull_box){at, at})) return 1;
+            if (may_enter(q->scene, v, p->way) && is_in_rectangle(v, p->picture) && cull_volume_touches(&v->volume, (cull_box){at, at})) return 1;
         }
     }
     return 0;
@@ -150,27 +161,28 @@ static void look_at(const oracle_request *q, const view_base *base, uint32_t sta
     const double from = t->starts[place], to = fmin(t->starts[place + 1], from + 1);
     const uint32_t zone = t->zones[place];
     const double *origin = q->scene->zones[zone].origin, at = from + share * (to - from);
-    float target[3];
+    target p = {.zone = zone, .way = t->ways[place]};
     ray exact = *r;
     for (int i = 0; i < 3; i++) {
-        target[i] = (float)(r->from[i] + at * r->along[i] - origin[i]);
-        exact.along[i] = ((double)target[i] + origin[i]) - r->from[i];
+        p.at[i] = (float)(r->from[i] + at * r->along[i] - origin[i]);
+        exact.along[i] = ((double)p.at[i] + origin[i]) - r->from[i];
     }
     const double size = sqrt(dot(exact.along, exact.along));
     if (!(size > q->camera->near_m)) return;
     trace again;
     follow(q, start_zone, &exact, &again);
-    if (again.count <= place || again.zones[place] != zone || !(again.starts[place] <= 1 && again.starts[place + 1] >= 1)) return;
+    if (again.count <= place || again.zones[place] != zone || again.ways[place] != p.way || !(again.starts[place] <= 1 && again.starts[place + 1] >= 1)) return;
     const double depth = -dot(exact.along, base->back);
-    const float picture[2] = {(float)(dot(exact.along, base->right) / (depth * base->wide)), (float)(dot(exact.along, base->up) / (depth * base->tall))};
-    if (!(depth > 0) || depth > q->camera->far_m || fabsf(picture[0]) > 1 || fabsf(picture[1]) > 1) return; // not in the picture
+    p.picture[0] = (float)(dot(exact.along, base->right) / (depth * base->wide));
+    p.picture[1] = (float)(dot(exact.along, base->up) / (depth * base->tall));
+    if (!(depth > 0) || depth > q->camera->far_m || fabsf(p.picture[0]) > 1 || fabsf(p.picture[1]) > 1) return; // not in the picture
     out->points++;
     out->behind += place >= 2;
-    if (is_seen(q, zone, target, picture)) return;
+    if (is_seen(q, &p)) return;
     if (out->missed++ > 0) return;
     out->zone = zone;
     out->portals = place;
-    for (int i = 0; i < 3; i++) out->at[i] = (double)target[i] + origin[i];
+    for (int i = 0; i < 3; i++) out->at[i] = (double)p.at[i] + origin[i];
 }
 
 static int holds(const scene *s, uint32_t zone, const double p[3])

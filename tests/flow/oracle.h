@@ -17,7 +17,7 @@ typedef struct oracle_request {
 typedef struct oracle_answer {
     uint64_t points;  // looked at: each on a line from the eye that nothing stops
     uint64_t behind;  // of them, behind two portals or more
-    uint64_t missed;  // in no volume of their zone, or their zone was not reached
+    uint64_t missed;  // in no volume of their zone that may have come in their way, or their zone was not reached
     uint32_t zone;    // of the first that was missed
     uint32_t portals; // on the way to it
     double at[3];

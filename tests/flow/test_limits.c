@@ -113,7 +113,7 @@ static void a_crosser_that_writes_nonsense_does_not_narrow_and_is_counted(void *
     const camera c = maze_camera(&m, (const double[3]){1, 1, 2}, (const double[3]){1, 0, 0}, 60);
     for (lie lie = LIE_MANY; lie <= LIE_NONE; lie++) {
         liar l = {&m, lie};
-        const flow_request q = {.camera = &c, .frame = {320, 240, 0, 0, CULL_VIEW_MAIN}, .open = m.open, .crosser = {&l, lies, NULL}};
+        const flow_request q = {.camera = &c, .frame = {320, 240, 0, 0, CULL_VIEW_MAIN}, .open = m.open, .crosser = {&l, lies, NULL, NULL}};
         flow_result r;
         flow_run(m.flow, &q, &r);
         if (lie == LIE_NONE) {
@@ -135,7 +135,7 @@ static void where_the_room_for_planes_runs_out_volumes_merge_and_it_is_counted(v
     maze_grid(&m, &(grid_recipe){.wide = 20, .deep = 20, .doors = DOORS_WHOLE_FACE, .seed = 1, .pose = POSE_NONE});
     const camera c = maze_camera(&m, (const double[3]){0.5, 1, 0.5}, (const double[3]){1, 0, 1}, 90);
     liar l = {&m, LIE_PADDED};
-    const flow_request q = {.camera = &c, .frame = {320, 240, 0, 0, CULL_VIEW_MAIN}, .open = m.open, .crosser = {&l, lies, NULL}};
+    const flow_request q = {.camera = &c, .frame = {320, 240, 0, 0, CULL_VIEW_MAIN}, .open = m.open, .crosser = {&l, lies, NULL, NULL}};
     flow_result r;
     flow_run(m.flow, &q, &r);
     assert_true(r.limits_hit > 0);
@@ -217,16 +217,6 @@ static void a_run_allocates_nothing_and_gives_the_same_bits_again(void **state)
 
 // ---- Planes from zone to zone ----
 
-static void random_unit(uint64_t *seed, double out[3])
-{
-    double length = 0;
-    while (length < 0.1) {
-        for (int i = 0; i < 3; i++) out[i] = random_between(seed, -1, 1);
-        length = sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]);
-    }
-    for (int i = 0; i < 3; i++) out[i] /= length;
-}
-
 // Points of a zone as floats, just inside a plane that was made for another zone, in double; then the plane in float.
 static void a_plane_carried_to_another_zone_keeps_every_point_that_the_exact_one_has(void **state)
 {
@@ -241,7 +231,7 @@ static void a_plane_carried_to_another_zone_keeps_every_point_that_the_exact_one
         const float radius = m.zones[to].zone.radius;
         double normal[3], at[3], offset = 0, exact = 0;
         float q[3];
-        random_unit(&seed, normal);
+        random_direction(&seed, normal);
         for (int k = 0; k < 3; k++) {
             q[k] = (float)random_between(&seed, (double)-radius, (double)radius);
             at[k] = (double)q[k] + (b[k] - a[k]); // relative to `from`, exact: whole metres and floats of few bits more

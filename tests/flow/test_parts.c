@@ -91,7 +91,7 @@ static void run(maze *m, const camera *c, teller *t, telling how, flow_result *o
     t->inner = maze_crosser(m, CROSSER_NARROW);
     t->how = how;
     t->asked = t->most_part = 0;
-    const flow_request q = {.camera = c, .frame = {320, 240, 0, 0, CULL_VIEW_MAIN}, .open = m->open, .crosser = {t, cross, sight}};
+    const flow_request q = {.camera = c, .frame = {320, 240, 0, 0, CULL_VIEW_MAIN}, .open = m->open, .crosser = {t, cross, sight, NULL}};
     flow_run(m->flow, &q, out);
 }
 

@@ -309,7 +309,7 @@ static void what_lies_between_two_portals_into_one_zone_is_not_drawn_by_a_widene
 }
 
 // A large triangle and a small one that lies over its long side by `out` metres, or in it; their rectangles do not tell.
-static uint32_t volumes_of_triangles(double out)
+static uint32_t volumes_of_triangles(double out, crosser_kind kind, uint32_t *entry)
 {
     maze m;
     maze_begin(&m, &POSE_NONE);
@@ -321,8 +321,9 @@ static uint32_t volumes_of_triangles(double out)
     maze_end(&m);
     const camera c = maze_camera(&m, (const double[3]){1, 1.5, 4}, (const double[3]){1, 0, 0}, 90);
     flow_result r;
-    maze_run(&m, &c, CROSSER_NARROW, &r);
+    maze_run(&m, &c, kind, &r);
     const uint32_t count = maze_find(&r, 1)->count;
+    *entry = r.volumes[r.by_zone[maze_find(&r, 1)->first]].volume.entry;
     expect_seen(&m, &c, &r, 4000);
     maze_close(&m);
     return count;
@@ -331,10 +332,21 @@ static uint32_t volumes_of_triangles(double out)
 static void a_volume_inside_another_is_dropped_and_one_that_sticks_out_by_a_millimetre_is_not(void **state)
 {
     (void)state;
-    assert_int_equal(volumes_of_triangles(-0.25), 1);
-    assert_int_equal(volumes_of_triangles(-0.015625), 1);
-    assert_int_equal(volumes_of_triangles(0.0009765625), 2);
-    assert_int_equal(volumes_of_triangles(0.25), 2);
+    uint32_t entry;
+    assert_int_equal(volumes_of_triangles(-0.25, CROSSER_NARROW, &entry), 1);
+    assert_int_equal(entry, 0); // it stands for both
+    assert_int_equal(volumes_of_triangles(-0.015625, CROSSER_NARROW, &entry), 1);
+    assert_int_equal(volumes_of_triangles(0.0009765625, CROSSER_NARROW, &entry), 2);
+    assert_int_not_equal(entry, 0);
+    assert_int_equal(volumes_of_triangles(0.25, CROSSER_NARROW, &entry), 2);
+}
+
+static void volumes_that_came_in_different_ways_stay_apart_where_the_culler_asks_for_it(void **state)
+{
+    (void)state;
+    uint32_t entry;
+    assert_int_equal(volumes_of_triangles(-0.25, CROSSER_BY_ENTRY, &entry), 2);
+    assert_int_not_equal(entry, 0);
 }
 
 static void what_only_the_second_portal_shows_is_found(void **state)
@@ -458,6 +470,7 @@ int main(void)
         cmocka_unit_test(narrowing_reaches_no_zone_that_the_flood_does_not),
         cmocka_unit_test(what_lies_between_two_portals_into_one_zone_is_not_drawn_by_a_widened_volume),
         cmocka_unit_test(a_volume_inside_another_is_dropped_and_one_that_sticks_out_by_a_millimetre_is_not),
+        cmocka_unit_test(volumes_that_came_in_different_ways_stay_apart_where_the_culler_asks_for_it),
         cmocka_unit_test(what_only_the_second_portal_shows_is_found),
         cmocka_unit_test(a_house_is_seen_into_from_another_across_the_outdoors),
         cmocka_unit_test(a_portal_with_all_its_corners_behind_the_camera_plane_beside_the_eye_is_not_lost),

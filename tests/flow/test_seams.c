@@ -190,7 +190,7 @@ static cull_crossing crosses_quietly(void *user, uint32_t zone, const cull_view 
 static void quiet_run(maze *m, const camera *c, quiet *q, flow_result *out)
 {
     q->whole = maze_crosser(m, CROSSER_NARROW);
-    const flow_request request = {.camera = c, .frame = {320, 240, 0, 0, CULL_VIEW_MAIN}, .open = m->open, .crosser = {q, crosses_quietly, NULL}};
+    const flow_request request = {.camera = c, .frame = {320, 240, 0, 0, CULL_VIEW_MAIN}, .open = m->open, .crosser = {q, crosses_quietly, NULL, NULL}};
     flow_run(m->flow, &request, out);
 }
 

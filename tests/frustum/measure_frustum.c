@@ -134,12 +134,12 @@ static uint32_t read_all(const cull_zone *zone)
 
 typedef struct measured_view { cull_view view; view_volume volume; } measured_view;
 
-static void strategy_open(strategy *t, test_host *h, const char *name, const cull_plugin *plugin, const cull_zone *zone,
+static void strategy_open(strategy *t, culler_host *h, const char *name, const cull_plugin *plugin, const cull_zone *zone,
                           const char *const *values, int writes_ids, size_t samples)
 {
     const double start = clock_ns(CLOCK_THREAD_CPUTIME_ID);
     if (session_open(&t->s, h, plugin, zone, values) != CULL_OK) {
-        fprintf(stderr, "%s: %s\n", name, h->last_log);
+        fprintf(stderr, "%s: %s\n", name, h->last_line);
         exit(2);
     }
     t->build_ms = (clock_ns(CLOCK_THREAD_CPUTIME_ID) - start) / 1e6;
@@ -176,10 +176,10 @@ int main(int argc, char **argv)
     if (passes < 1 || passes > MOST_PASSES) passes = 5;
     cull_box *boxes = boxes_load(argv[1], &count);
     const uint32_t view_count = views_load(argv[2], cameras);
-    test_zone zone;
-    test_zone_make(boxes, count, &zone);
-    test_host host;
-    test_host_init(&host);
+    hand_zone zone;
+    zone_of_boxes(boxes, count, &zone);
+    culler_host host;
+    culler_host_init(&host, 0);
     const view_frame frame = {1280, 720, 0, 0, CULL_VIEW_MAIN};
     const double origin[3] = {0, 0, 0};
     uint64_t planes = 0;
@@ -187,7 +187,7 @@ int main(int argc, char **argv)
         view_derive(&cameras[v], &frame, origin, &zone.zone.box, &views[v].view, &views[v].volume);
         planes += views[v].volume.plane_count;
     }
-    const cull_plugin *frustum = plugin_frustum();
+    const cull_plugin *frustum = plugin_named("frustum");
     if (!frustum || view_count == 0) return 2;
     static const char *const isas[] = {"plain", "avx2", "avx512"};
     static const char *const names[2][2][3] = {{{"brute plain", "brute avx2", "brute avx512"}, {"frustum plain", "frustum avx2", "frustum avx512"}},
@@ -237,7 +237,7 @@ int main(int argc, char **argv)
     free(ids);
     free(read_ns);
     free(empty_ns);
-    test_zone_free(&zone);
+    hand_zone_free(&zone);
     free(boxes);
     return 0;
 }

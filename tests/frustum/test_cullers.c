@@ -16,7 +16,7 @@ static const char *const isas[ISA_COUNT] = {"plain", "avx2", "avx512"};
 
 typedef enum boxes_kind { BOXES_SPREAD, BOXES_CLUSTERED, BOXES_GRID, BOXES_EQUAL, BOXES_ONE_GIANT } boxes_kind;
 
-static cull_box *make_boxes(random_state *r, boxes_kind kind, uint32_t count)
+static cull_box *make_boxes(uint64_t *r, boxes_kind kind, uint32_t count)
 {
     cull_box *boxes = calloc((size_t)count + 1, sizeof *boxes);
     assert_non_null(boxes);
@@ -49,7 +49,7 @@ typedef struct random_volumes {
     uint32_t count;
 } random_volumes;
 
-static void make_volumes(random_state *r, uint32_t count, random_volumes *out)
+static void make_volumes(uint64_t *r, uint32_t count, random_volumes *out)
 {
     out->count = count;
     for (uint32_t v = 0; v < count; v++) {
@@ -86,7 +86,7 @@ static uint32_t oracle(const cull_box *boxes, uint32_t count, const random_volum
 
 static const cull_plugin *frustum_or_skip(void)
 {
-    const cull_plugin *p = plugin_frustum();
+    const cull_plugin *p = plugin_named("frustum");
     if (!p) {
         fprintf(stderr, "SKIPPED: the frustum library is not built\n");
         skip();
@@ -95,7 +95,7 @@ static const cull_plugin *frustum_or_skip(void)
 }
 
 // Opens frustum and brute in each instruction set that this CPU has. Returns how many.
-static uint32_t open_all(session *s, test_host *h, const cull_plugin *frustum, const cull_zone *zone)
+static uint32_t open_all(session *s, culler_host *h, const cull_plugin *frustum, const cull_zone *zone)
 {
     uint32_t count = 0;
     for (int i = 0; i < ISA_COUNT; i++) {
@@ -115,15 +115,15 @@ static void every_culler_and_instruction_set_finds_the_set_of_the_scalar_loop(vo
     const cull_plugin *frustum = frustum_or_skip();
     static const uint32_t counts[] = {0, 1, 2, 15, 16, 17, 31, 33, 100, 255, 256, 257, 1000, 1023, 1025, 4096, 4097, MOST_ITEMS};
     static uint8_t expected[MOST_ITEMS], seen[MOST_ITEMS];
-    random_state r = {21};
+    uint64_t r = {21};
     uint64_t queries = 0, visible = 0;
     for (size_t c = 0; c < sizeof counts / sizeof counts[0]; c++)
         for (int kind = 0; kind < KIND_COUNT; kind++) {
-            test_host h;
-            test_host_init(&h);
+            culler_host h;
+            culler_host_init(&h, 0);
             cull_box *boxes = make_boxes(&r, (boxes_kind)kind, counts[c]);
-            test_zone zone;
-            test_zone_make(boxes, counts[c], &zone);
+            hand_zone zone;
+            zone_of_boxes(boxes, counts[c], &zone);
             session s[2 * ISA_COUNT];
             const uint32_t session_count = open_all(s, &h, frustum, &zone.zone);
             for (int q = 0; q < (counts[c] > 5000 ? 40 : 100); q++) {
@@ -131,9 +131,9 @@ static void every_culler_and_instruction_set_finds_the_set_of_the_scalar_loop(vo
                 make_volumes(&r, q % 3 ? 1 : (uint32_t)random_between(&r, 0, MOST_VOLUMES + 1), &v);
                 visible += oracle(boxes, counts[c], &v, expected);
                 for (uint32_t i = 0; i < session_count; i++) {
-                    const uint64_t allocations = h.allocations;
+                    const uint64_t allocations = h.memory.calls;
                     session_select(&s[i], &some_view, v.volumes, v.count);
-                    assert_true(h.allocations == allocations);
+                    assert_true(h.memory.calls == allocations);
                     const char *wrong = session_set(&s[i], seen);
                     if (wrong) fail_msg("%s %u items, query %d, session %u: %s", s[i].plugin->descriptor->id, counts[c], q, i, wrong);
                     if (counts[c]) assert_memory_equal(seen, expected, counts[c]);
@@ -141,9 +141,9 @@ static void every_culler_and_instruction_set_finds_the_set_of_the_scalar_loop(vo
                 }
             }
             for (uint32_t i = 0; i < session_count; i++) session_close(&s[i]);
-            assert_int_equal(h.live_blocks, 0);
-            assert_int_equal(h.live_bytes, 0);
-            test_zone_free(&zone);
+            assert_int_equal(h.memory.live_blocks, 0);
+            assert_int_equal(h.memory.live_bytes, 0);
+            hand_zone_free(&zone);
             free(boxes);
         }
     assert_true(queries > 10000 && visible > 100000);
@@ -155,21 +155,21 @@ static void permuted_boxes_give_the_same_set(void **state)
     const cull_plugin *frustum = frustum_or_skip();
     enum { COUNT = 3000 };
     static uint8_t a[COUNT], b[COUNT];
-    random_state r = {22};
+    uint64_t r = {22};
     cull_box *boxes = make_boxes(&r, BOXES_SPREAD, COUNT), *shuffled = calloc(COUNT, sizeof *shuffled);
     uint32_t from[COUNT];
     for (uint32_t i = 0; i < COUNT; i++) from[i] = i;
     for (uint32_t i = COUNT - 1; i > 0; i--) {
-        const uint32_t j = (uint32_t)(random_next(&r) % (i + 1)), swap = from[i];
+        const uint32_t j = (uint32_t)(random_bits(&r) % (i + 1)), swap = from[i];
         from[i] = from[j];
         from[j] = swap;
     }
     for (uint32_t i = 0; i < COUNT; i++) shuffled[i] = boxes[from[i]];
-    test_host h;
-    test_host_init(&h);
-    test_zone za, zb;
-    test_zone_make(boxes, COUNT, &za);
-    test_zone_make(shuffled, COUNT, &zb);
+    culler_host h;
+    culler_host_init(&h, 0);
+    hand_zone za, zb;
+    zone_of_boxes(boxes, COUNT, &za);
+    zone_of_boxes(shuffled, COUNT, &zb);
     session sa, sb;
     const char *values[2] = {"0", "auto"};
     assert_int_equal(session_open(&sa, &h, frustum, &za.zone, values), CULL_OK);
@@ -185,8 +185,8 @@ static void permuted_boxes_give_the_same_set(void **state)
     }
     session_close(&sa);
     session_close(&sb);
-    test_zone_free(&za);
-    test_zone_free(&zb);
+    hand_zone_free(&za);
+    hand_zone_free(&zb);
     free(boxes);
     free(shuffled);
 }
@@ -198,16 +198,16 @@ static void scaling_by_a_power_of_two_gives_the_same_set(void **state)
     enum { COUNT = 2000 };
     static uint8_t a[COUNT], b[COUNT];
     static const float scales[] = {0x1p-13f, 0.5f, 0x1p10f};
-    random_state r = {23};
+    uint64_t r = {23};
     cull_box *boxes = make_boxes(&r, BOXES_CLUSTERED, COUNT), *scaled = calloc(COUNT, sizeof *scaled);
     for (size_t k = 0; k < sizeof scales / sizeof scales[0]; k++) {
         for (uint32_t i = 0; i < COUNT; i++)
             for (int j = 0; j < 6; j++) (&scaled[i].min.x)[j] = (&boxes[i].min.x)[j] * scales[k];
-        test_host h;
-        test_host_init(&h);
-        test_zone za, zb;
-        test_zone_make(boxes, COUNT, &za);
-        test_zone_make(scaled, COUNT, &zb);
+        culler_host h;
+        culler_host_init(&h, 0);
+        hand_zone za, zb;
+        zone_of_boxes(boxes, COUNT, &za);
+        zone_of_boxes(scaled, COUNT, &zb);
         session sa, sb;
         const char *values[2] = {"0", "auto"};
         assert_int_equal(session_open(&sa, &h, frustum, &za.zone, values), CULL_OK);
@@ -225,8 +225,8 @@ static void scaling_by_a_power_of_two_gives_the_same_set(void **state)
         }
         session_close(&sa);
         session_close(&sb);
-        test_zone_free(&za);
-        test_zone_free(&zb);
+        hand_zone_free(&za);
+        hand_zone_free(&zb);
     }
     free(boxes);
     free(scaled);
@@ -238,12 +238,12 @@ static void a_smaller_volume_gives_a_subset(void **state)
     const cull_plugin *frustum = frustum_or_skip();
     enum { COUNT = 2000 };
     static uint8_t whole[COUNT], part[COUNT];
-    random_state r = {24};
+    uint64_t r = {24};
     cull_box *boxes = make_boxes(&r, BOXES_SPREAD, COUNT);
-    test_host h;
-    test_host_init(&h);
-    test_zone zone;
-    test_zone_make(boxes, COUNT, &zone);
+    culler_host h;
+    culler_host_init(&h, 0);
+    hand_zone zone;
+    zone_of_boxes(boxes, COUNT, &zone);
     session s;
     const char *values[2] = {"0", "auto"};
     assert_int_equal(session_open(&s, &h, frustum, &zone.zone, values), CULL_OK);
@@ -258,21 +258,21 @@ static void a_smaller_volume_gives_a_subset(void **state)
         for (uint32_t i = 0; i < COUNT; i++) assert_true(part[i] <= whole[i]);
     }
     session_close(&s);
-    test_zone_free(&zone);
+    hand_zone_free(&zone);
     free(boxes);
 }
 
 static void none_draws_everything_in_one_run(void **state)
 {
     (void)state;
-    random_state r = {25};
+    uint64_t r = {25};
     static const uint32_t counts[] = {0, 1, 777};
     for (int c = 0; c < 3; c++) {
         cull_box *boxes = make_boxes(&r, BOXES_SPREAD, counts[c]);
-        test_host h;
-        test_host_init(&h);
-        test_zone zone;
-        test_zone_make(boxes, counts[c], &zone);
+        culler_host h;
+        culler_host_init(&h, 0);
+        hand_zone zone;
+        zone_of_boxes(boxes, counts[c], &zone);
         session s;
         assert_int_equal(session_open(&s, &h, &builtin_none, &zone.zone, NULL), CULL_OK);
         static random_volumes v;
@@ -281,8 +281,8 @@ static void none_draws_everything_in_one_run(void **state)
         assert_int_equal(s.run_count, counts[c] ? 1 : 0);
         if (counts[c]) assert_true(s.runs[0].first == 0 && s.runs[0].count == counts[c]);
         session_close(&s);
-        assert_int_equal(h.live_blocks, 0);
-        test_zone_free(&zone);
+        assert_int_equal(h.memory.live_blocks, 0);
+        hand_zone_free(&zone);
         free(boxes);
     }
 }
@@ -291,49 +291,49 @@ static void bad_options_are_refused_with_the_legal_values(void **state)
 {
     (void)state;
     const cull_plugin *frustum = frustum_or_skip();
-    test_host h;
-    test_host_init(&h);
-    test_zone zone;
-    test_zone_make(NULL, 0, &zone);
+    culler_host h;
+    culler_host_init(&h, 0);
+    hand_zone zone;
+    zone_of_boxes(NULL, 0, &zone);
     session s;
     const char *bad_face[2] = {"2", "auto"}, *bad_isa[2] = {"0", "mmx"};
     assert_int_equal(session_open(&s, &h, frustum, &zone.zone, bad_face), CULL_ERR_OPTION);
-    assert_non_null(strstr(h.last_log, "0 or 1"));
+    assert_non_null(strstr(h.last_line, "0 or 1"));
     assert_int_equal(session_open(&s, &h, frustum, &zone.zone, bad_isa), CULL_ERR_OPTION);
-    assert_non_null(strstr(h.last_log, "avx512"));
+    assert_non_null(strstr(h.last_line, "avx512"));
     assert_int_equal(session_open(&s, &h, &builtin_brute, &zone.zone, &bad_isa[1]), CULL_ERR_OPTION);
-    assert_non_null(strstr(h.last_log, "avx512"));
-    assert_int_equal(h.live_blocks, 0);
-    test_zone_free(&zone);
+    assert_non_null(strstr(h.last_line, "avx512"));
+    assert_int_equal(h.memory.live_blocks, 0);
+    hand_zone_free(&zone);
 }
 
 static void every_allocation_may_fail_and_nothing_is_lost(void **state)
 {
     (void)state;
     const cull_plugin *plugins[3] = {&builtin_none, &builtin_brute, frustum_or_skip()};
-    random_state r = {26};
+    uint64_t r = {26};
     cull_box *boxes = make_boxes(&r, BOXES_SPREAD, 500);
-    test_zone zone;
-    test_zone_make(boxes, 500, &zone);
+    hand_zone zone;
+    zone_of_boxes(boxes, 500, &zone);
     const char *values[3][2] = {{NULL, NULL}, {"auto", NULL}, {"1", "auto"}};
     for (int p = 0; p < 3; p++) {
         int failures = 0;
         for (uint64_t k = 1;; k++) {
-            test_host h;
-            test_host_init(&h);
-            h.fail_at = k;
+            culler_host h;
+            culler_host_init(&h, 0);
+            h.memory.fail_at = k;
             session s;
             const cull_result result = session_open(&s, &h, plugins[p], &zone.zone, values[p]);
             if (result == CULL_OK) session_close(&s);
-            assert_int_equal(h.live_blocks, 0);
-            assert_int_equal(h.live_bytes, 0);
+            assert_int_equal(h.memory.live_blocks, 0);
+            assert_int_equal(h.memory.live_bytes, 0);
             if (result == CULL_OK) break;
             assert_int_equal(result, CULL_ERR_MEMORY);
             failures++;
         }
         assert_in_range(failures, 2, 20);
     }
-    test_zone_free(&zone);
+    hand_zone_free(&zone);
     free(boxes);
 }
 
@@ -349,7 +349,7 @@ typedef struct viewer_job {
 static void *viewer_thread(void *arg)
 {
     viewer_job *job = arg;
-    random_state r = {job->seed};
+    uint64_t r = {job->seed};
     uint8_t *seen = calloc(job->count, 1), *expected = calloc(job->count, 1);
     random_volumes *v = calloc(1, sizeof *v);
     for (int q = 0; q < 60 && seen && expected && v; q++) {
@@ -369,12 +369,12 @@ static void two_viewers_of_one_index_agree_with_the_scalar_loop(void **state)
     (void)state;
     const cull_plugin *frustum = frustum_or_skip();
     enum { COUNT = 5000 };
-    random_state r = {27};
+    uint64_t r = {27};
     cull_box *boxes = make_boxes(&r, BOXES_SPREAD, COUNT);
-    test_host h;
-    test_host_init(&h);
-    test_zone zone;
-    test_zone_make(boxes, COUNT, &zone);
+    culler_host h;
+    culler_host_init(&h, 0);
+    hand_zone zone;
+    zone_of_boxes(boxes, COUNT, &zone);
     const char *values[2] = {"0", "auto"};
     static viewer_job jobs[2];
     session owner;
@@ -395,8 +395,8 @@ static void two_viewers_of_one_index_agree_with_the_scalar_loop(void **state)
         free(jobs[i].s.scratch);
     }
     session_close(&owner);
-    assert_int_equal(h.live_blocks, 0);
-    test_zone_free(&zone);
+    assert_int_equal(h.memory.live_blocks, 0);
+    hand_zone_free(&zone);
     free(boxes);
 }
 
@@ -429,12 +429,12 @@ static void explain_says_kept_exactly_of_items_that_are_kept(void **state)
     (void)state;
     const cull_plugin *frustum = frustum_or_skip();
     enum { COUNT = 300 };
-    random_state r = {28};
+    uint64_t r = {28};
     cull_box *boxes = make_boxes(&r, BOXES_SPREAD, COUNT);
-    test_host h;
-    test_host_init(&h);
-    test_zone zone;
-    test_zone_make(boxes, COUNT, &zone);
+    culler_host h;
+    culler_host_init(&h, 0);
+    hand_zone zone;
+    zone_of_boxes(boxes, COUNT, &zone);
     session s;
     const char *values[2] = {"0", "auto"};
     assert_int_equal(session_open(&s, &h, frustum, &zone.zone, values), CULL_OK);
@@ -458,7 +458,7 @@ static void explain_says_kept_exactly_of_items_that_are_kept(void **state)
         }
     }
     session_close(&s);
-    test_zone_free(&zone);
+    hand_zone_free(&zone);
     free(boxes);
 }
 

@@ -13,7 +13,7 @@
 enum { WALLS = 1500, OTHERS = 200, ITEMS = WALLS + OTHERS };
 
 typedef struct wall_zone {
-    test_zone z;
+    hand_zone z;
     cull_vec3 positions[4 * ITEMS];
     uint32_t indices[6 * ITEMS], loops[4 * ITEMS];
     cull_wall walls[ITEMS];
@@ -21,7 +21,7 @@ typedef struct wall_zone {
 } wall_zone;
 
 // Quads whose vertices are rounded to `grid` metres, as a scene's are; the last items are no walls or two-sided.
-static wall_zone *make_walls(random_state *r, double grid)
+static wall_zone *make_walls(uint64_t *r, double grid)
 {
     wall_zone *w = calloc(1, sizeof *w);
     cull_box *boxes = calloc(ITEMS, sizeof *boxes);
@@ -52,7 +52,7 @@ static wall_zone *make_walls(random_state *r, double grid)
         for (int k = 0; k < 3; k++) offset -= n[k] * c[k];
         w->planes[i] = (cull_plane){{(float)n[0], (float)n[1], (float)n[2]}, (float)offset};
     }
-    test_zone_make(boxes, ITEMS, &w->z);
+    zone_of_boxes(boxes, ITEMS, &w->z);
     free(boxes);
     for (uint32_t i = 0; i < ITEMS; i++) {
         uint32_t flags = CULL_ITEM_WALL;
@@ -113,18 +113,18 @@ static void check_view(const wall_zone *w, session *s, const double eye[4], tall
 static void only_walls_that_show_no_front_are_dropped(void **state)
 {
     (void)state;
-    const cull_plugin *frustum = plugin_frustum();
+    const cull_plugin *frustum = plugin_named("frustum");
     if (!frustum) {
         fprintf(stderr, "SKIPPED: the frustum library is not built\n");
         skip();
     }
-    random_state r = {31};
+    uint64_t r = {31};
     static const char *const isas[] = {"plain", "avx2", "avx512"};
     for (int g = 0; g < 3; g++) {
         wall_zone *w = make_walls(&r, (const double[]){0x1p-18, 0x1p-10, 0x1p-5}[g]);
         for (int i = 0; i < 3; i++) {
-            test_host h;
-            test_host_init(&h);
+            culler_host h;
+            culler_host_init(&h, 0);
             session s;
             const char *values[2] = {"1", isas[i]};
             if (session_open(&s, &h, frustum, &w->z.zone, values) != CULL_OK) continue;
@@ -144,9 +144,9 @@ static void only_walls_that_show_no_front_are_dropped(void **state)
             assert_int_equal(t.lost, 0);
             assert_true(t.dropped * 10 > t.backs * (g < 2 ? 9 : 5)); // and nearly all of them are
             session_close(&s);
-            assert_int_equal(h.live_blocks, 0);
+            assert_int_equal(h.memory.live_blocks, 0);
         }
-        test_zone_free(&w->z);
+        hand_zone_free(&w->z);
         free(w);
     }
 }
@@ -154,15 +154,15 @@ static void only_walls_that_show_no_front_are_dropped(void **state)
 static void every_instruction_set_drops_the_same_walls(void **state)
 {
     (void)state;
-    const cull_plugin *frustum = plugin_frustum();
+    const cull_plugin *frustum = plugin_named("frustum");
     if (!frustum) {
         fprintf(stderr, "SKIPPED: the frustum library is not built\n");
         skip();
     }
-    random_state r = {32};
+    uint64_t r = {32};
     wall_zone *w = make_walls(&r, 0x1p-10);
-    test_host h;
-    test_host_init(&h);
+    culler_host h;
+    culler_host_init(&h, 0);
     session s[3];
     const char *isas[] = {"plain", "avx2", "avx512"};
     int count = 0;
@@ -185,13 +185,13 @@ static void every_instruction_set_drops_the_same_walls(void **state)
         }
     }
     for (int i = 0; i < count; i++) session_close(&s[i]);
-    test_zone_free(&w->z);
+    hand_zone_free(&w->z);
     free(w);
 }
 
 enum { VOLUMES_MOST = 20, VOLUME_PLANES = 4 };
 
-static void random_volumes(random_state *r, cull_volume *volumes, cull_plane (*planes)[VOLUME_PLANES])
+static void random_volumes(uint64_t *r, cull_volume *volumes, cull_plane (*planes)[VOLUME_PLANES])
 {
     for (uint32_t v = 0; v < VOLUMES_MOST; v++) {
         for (uint32_t k = 0; k < VOLUME_PLANES; k++) {
@@ -208,12 +208,12 @@ static void random_volumes(random_state *r, cull_volume *volumes, cull_plane (*p
 static void volumes_and_faces_in_one_pass_leave_what_each_leaves_alone(void **state)
 {
     (void)state;
-    const cull_plugin *frustum = plugin_frustum();
+    const cull_plugin *frustum = plugin_named("frustum");
     if (!frustum) {
         fprintf(stderr, "SKIPPED: the frustum library is not built\n");
         skip();
     }
-    random_state r = {33};
+    uint64_t r = {33};
     static const char *const isas[] = {"plain", "avx2", "avx512"};
     static const uint32_t counts[] = {1, 16, 17, 250, 256, 257, ITEMS}; // one block, two levels, three
     static const uint32_t volume_counts[] = {0, 1, 2, 5, 16, 17, VOLUMES_MOST};
@@ -224,8 +224,8 @@ static void volumes_and_faces_in_one_pass_leave_what_each_leaves_alone(void **st
     uint64_t kept = 0, dropped = 0;
     for (size_t c = 0; c < sizeof counts / sizeof *counts; c++)
         for (int isa = 0; isa < 3; isa++) {
-            test_host h;
-            test_host_init(&h);
+            culler_host h;
+            culler_host_init(&h, 0);
             session s;
             const char *values[2] = {"1", isas[isa]};
             w->z.zone.item_count = counts[c];
@@ -257,10 +257,10 @@ static void volumes_and_faces_in_one_pass_leave_what_each_leaves_alone(void **st
                 }
             }
             session_close(&s);
-            assert_int_equal(h.live_blocks, 0);
+            assert_int_equal(h.memory.live_blocks, 0);
         }
     assert_true(kept > 50000 && dropped > 50000);
-    test_zone_free(&w->z);
+    hand_zone_free(&w->z);
     free(w);
 }
 

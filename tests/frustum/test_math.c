@@ -8,7 +8,7 @@
 #include <cmocka.h>
 #include <string.h>
 
-static cull_box random_box(random_state *r, double reach, double size)
+static cull_box random_box(uint64_t *r, double reach, double size)
 {
     cull_box b;
     float *low = &b.min.x, *high = &b.max.x;
@@ -28,7 +28,7 @@ static cull_vec3 corner(cull_box b, int which)
 static void a_plane_touches_a_box_exactly_when_one_of_its_corners_is_inside(void **state)
 {
     (void)state;
-    random_state r = {1};
+    uint64_t r = {1};
     int touched = 0, contained = 0;
     for (int k = 0; k < 20000; k++) {
         const cull_box b = random_box(&r, 10, 5);
@@ -50,7 +50,7 @@ static void a_plane_touches_a_box_exactly_when_one_of_its_corners_is_inside(void
 static void a_union_is_the_smallest_box_that_contains_both(void **state)
 {
     (void)state;
-    random_state r = {2};
+    uint64_t r = {2};
     for (int k = 0; k < 5000; k++) {
         const cull_box a = random_box(&r, 10, 5), b = random_box(&r, 10, 5), u = cull_box_union(a, b);
         assert_true(cull_box_contains(u, a) && cull_box_contains(u, b));
@@ -86,7 +86,7 @@ static void the_radius_is_the_largest_absolute_coordinate(void **state)
 static void points_kept_by_a_clip_are_those_inside_and_on_the_border(void **state)
 {
     (void)state;
-    random_state r = {3};
+    uint64_t r = {3};
     for (int k = 0; k < 5000; k++) {
         cull_point square[4] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}, out[5], cxx[5];
         const double angle = random_between(&r, 0, 6.28);
@@ -110,7 +110,7 @@ static void points_kept_by_a_clip_are_those_inside_and_on_the_border(void **stat
 static void two_polygons_that_share_an_edge_are_cut_at_the_same_point(void **state)
 {
     (void)state;
-    random_state r = {4};
+    uint64_t r = {4};
     int cuts = 0;
     for (int k = 0; k < 5000; k++) {
         cull_point p[4];
@@ -160,7 +160,7 @@ static void a_clip_that_knows_heights_gives_the_points_of_one_that_does_not(void
 {
     (void)state;
     enum { CORNERS = 9 };
-    random_state r = {7};
+    uint64_t r = {7};
     uint64_t cut_polygons = 0;
     for (int k = 0; k < 50000; k++) {
         cull_point p[CORNERS], plain[2 * CORNERS], carried[2 * CORNERS], known[2 * CORNERS];
@@ -184,7 +184,7 @@ static void a_clip_that_knows_heights_gives_the_points_of_one_that_does_not(void
 static void the_next_float_is_the_librarys(void **state)
 {
     (void)state;
-    random_state r = {8};
+    uint64_t r = {8};
     const float some[] = {0, -0.0f, 1, -1, FLT_MIN, -FLT_MIN, 1e-45f, -1e-45f, -FLT_MAX, 0.99999994f};
     for (size_t i = 0; i < sizeof some / sizeof *some; i++) {
         const float above = cull_float_above(some[i]), library = nextafterf(some[i], FLT_MAX);
@@ -200,7 +200,7 @@ static void the_next_float_is_the_librarys(void **state)
 static void a_plane_guarded_once_for_many_zones_has_the_bits_of_one_guarded_for_each(void **state)
 {
     (void)state;
-    random_state r = {9};
+    uint64_t r = {9};
     for (int k = 0; k < 5000; k++) {
         cull_guard g = {.pixel_tangent = random_between(&r, 1e-5, 1e-2), .reach = random_between(&r, 1, 20)};
         double n[3];
@@ -220,7 +220,7 @@ static void a_plane_guarded_once_for_many_zones_has_the_bits_of_one_guarded_for_
 static void a_point_on_the_border_of_a_volume_survives_every_order_of_its_sum(void **state)
 {
     (void)state;
-    random_state r = {5};
+    uint64_t r = {5};
     for (int k = 0; k < 200000; k++) {
         double n[3], p[3], radius = exp2(random_between(&r, -10, 13)), offset = 0;
         random_direction(&r, n);
@@ -249,7 +249,7 @@ static void a_point_on_the_border_of_a_volume_survives_every_order_of_its_sum(vo
 static void planes_are_the_same_bits_in_c_and_in_cxx(void **state)
 {
     (void)state;
-    random_state r = {6};
+    uint64_t r = {6};
     for (int k = 0; k < 2000; k++) {
         cull_guard g = {.pixel_tangent = 1e-3, .reach = random_between(&r, 1, 20), .radius = random_between(&r, 1, 1000)};
         double n[3];

@@ -98,19 +98,6 @@ static uint32_t follow_ray(const zone_chain *t, const ordered *o, const double f
     return pairs;
 }
 
-static void random_direction(uint64_t *seed, double out[3])
-{
-    double size;
-    do {
-        size = 0;
-        for (int k = 0; k < 3; ++k) {
-            out[k] = random_between(seed, -1, 1);
-            size += out[k] * out[k];
-        }
-    } while (size > 1 || size < 0.01);
-    for (int k = 0; k < 3; ++k) out[k] /= sqrt(size);
-}
-
 // Anywhere in the scene's box and a little beyond; every third in the plane of a piece, or at a corner of one.
 static void random_eye(const zone_chain *t, uint64_t *seed, double out[4])
 {
