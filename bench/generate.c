@@ -26,6 +26,7 @@ static const scene_kind *kind_named(const char *name)
         {"house", "", NULL, zoned_house, 0, 0, 0},
         {"demo", "", ".obj", NULL, 0, 0, 0},
         {"flagship", "", NULL, zoned_flagship, 0, 0, 0},
+        {"terrain", "tiles", ".obj", NULL, 1024, 1, 65536},
     };
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; ++i)
         if (strcmp(kinds[i].name, name) == 0) return &kinds[i];
@@ -116,6 +117,7 @@ result generate_scene(const char *kind, uint64_t size, uint64_t seed, const char
     text_file out = text_open(memory);
     if (strcmp(k->name, "city") == 0) generate_city(size, seed, memory, &out);
     else if (strcmp(k->name, "swarm") == 0) generate_swarm(size, seed, &out);
+    else if (strcmp(k->name, "terrain") == 0) generate_terrain(size, seed, memory, &out);
     else generate_rooms(size, seed, memory, &out);
     return text_close(&out, path, r);
 }

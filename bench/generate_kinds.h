@@ -12,6 +12,7 @@ enum { CENTIMETRE = 100, METRE = 10000, PLACE_DECIMALS = 4 };
 void generate_city(uint64_t boxes, uint64_t seed, const allocator *memory, text_file *out);
 void generate_swarm(uint64_t boxes, uint64_t seed, text_file *out);
 void generate_rooms(uint64_t rooms, uint64_t seed, const allocator *memory, text_file *out);
+void generate_terrain(uint64_t tiles, uint64_t seed, const allocator *memory, text_file *out);
 void generate_demo(uint64_t seed, const allocator *memory, text_file *out);
 void generate_demo_path(text_file *out);
 

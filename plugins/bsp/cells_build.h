@@ -45,6 +45,7 @@ typedef struct cells_interface { // between the cell in front of a node's plane 
     uint32_t first_point, point_count; // in opening_points, counterclockwise seen from the front
     uint32_t open;                     // bit 0: for eyes in front, bit 1: for eyes behind
     uint32_t by_portals;               // the same bits: it is shut, and would be open but for the zone's portals
+    uint32_t is_sliver;                // no circle of slack fits in
 } cells_interface;
 
 // Cells joined by openings that are open both ways. Of a root: areas of the one-sided walls that face its cells, and turn away.

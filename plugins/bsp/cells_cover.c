@@ -1,7 +1,7 @@
 // Which ways an opening is shut: what walls in its plane leave of it, fragment by fragment.
 // SPDX-License-Identifier: MIT
 //
-// Invariant: shut from one side only where every point of the opening lies within 1.5 slack of a wall's piece that hides from there
+// Invariant: shut from one side only where every point of the opening lies within 1.75 slack of a wall's piece that hides from there
 // (a wall is taken with its edges moved out by slack, its sharp corners cut off at slack), or in slivers narrower than slack whose area
 // is less than slack times the opening's perimeter (where edges meet at a sharp angle, rounding moves the corner by more); every other
 // doubt leaves it open.
@@ -59,6 +59,43 @@ static cull_point cross(const double n[3], cull_point d)
 {
     const cull_point c = {n[1] * d.z - n[2] * d.y, n[2] * d.x - n[0] * d.z, n[0] * d.y - n[1] * d.x};
     return c;
+}
+
+static double distance_to_segment(cull_point a, cull_point b, cull_point at)
+{
+    const cull_point way = minus(b, a), d = minus(at, a);
+    const double square = (way.x * way.x + way.y * way.y) + way.z * way.z, along = (way.x * d.x + way.y * d.y) + way.z * d.z;
+    const double t = !(square > 0) || along < 0 ? 0 : along > square ? 1 : along / square;
+    const cull_point off = {d.x - t * way.x, d.y - t * way.y, d.z - t * way.z};
+    return sqrt((off.x * off.x + off.y * off.y) + off.z * off.z);
+}
+
+// All corners between `from` and `to`, going round.
+static int is_straight(const cull_point *p, uint32_t count, uint32_t from, uint32_t to, double most)
+{
+    for (uint32_t i = from + 1; i < to; i++)
+        if (!(distance_to_segment(p[from % count], p[to % count], p[i % count]) <= most)) return 0;
+    return 1;
+}
+
+// Without the corners that edges run through: an edge between two of them is turned by rounding the more the shorter it is, and its line
+// would cut off the rest of the wall. The farthest from any point is a true corner. Returns how many are left.
+static uint32_t straightened(const cull_point *p, uint32_t count, double most, cull_point out[WALL_CUTS_MOST])
+{
+    uint32_t first = 0, kept = 0;
+    double farthest = -1;
+    for (uint32_t i = 0; i < count; i++) {
+        const cull_point d = minus(p[i], p[0]);
+        const double square = (d.x * d.x + d.y * d.y) + d.z * d.z;
+        if (square > farthest) farthest = square, first = i;
+    }
+    for (uint32_t at = first, end = first + count; at < end;) {
+        uint32_t next = at + 1;
+        while (next < end && is_straight(p, count, at, next + 1, most)) next++;
+        out[kept++] = p[at % count];
+        at = next;
+    }
+    return kept;
 }
 
 // n: the unit normal that the points run counterclockwise about. 0: no cuts can be made of it.
@@ -164,6 +201,11 @@ static extent extent_of(const cull_point *p, uint32_t count)
     return out;
 }
 
+static int is_sliver(const cells_build *b, extent e)
+{
+    return 2 * e.area <= b->slack * e.perimeter;
+}
+
 // What is left is slivers alone: each holds no circle of slack, and all of them together are no more than a rim of slack.
 static int are_slivers(const cover *c, extent whole)
 {
@@ -171,7 +213,7 @@ static int are_slivers(const cover *c, extent whole)
     double area = 0;
     for (uint32_t i = 0; i < c->count; i++) {
         const extent e = extent_of(fragment_points(c, c->fragments[i]), c->fragments[i].count);
-        if (2 * e.area > slack * e.perimeter) return 0;
+        if (!is_sliver(c->b, e)) return 0;
         area += e.area;
     }
     return area <= slack * whole.perimeter;
@@ -211,7 +253,9 @@ static int shutter_cuts(const cells_build *b, const shutter *s, uint32_t plane, 
         turn += n[0] * (u.y * v.z - u.z * v.y) + n[1] * (u.z * v.x - u.x * v.z) + n[2] * (u.x * v.y - u.y * v.x);
     }
     for (int i = 0; i < 3 && turn < 0; i++) normal[i] = -n[i];
-    return wall_cuts_make(out, s->points, s->count, normal, b->slack);
+    cull_point corners[WALL_CUTS_MOST];
+    if (s->count > WALL_CUTS_MOST) return 0;
+    return wall_cuts_make(out, corners, straightened(s->points, s->count, b->slack / 4, corners), normal, b->slack);
 }
 
 static cover_step subtract_all(cover *c, const shutter *s)
@@ -272,8 +316,7 @@ static cover_step subtract_portals(cover *c, uint32_t cell, uint32_t side)
 // What is left open of an opening that has an area.
 static int is_left_open(const cover *c, cover_step step, extent whole)
 {
-    const int is_sliver = 2 * whole.area <= c->b->slack * whole.perimeter;
-    return c->count > 0 && (step != COVER_DONE || is_sliver || !are_slivers(c, whole));
+    return c->count > 0 && (step != COVER_DONE || is_sliver(c->b, whole) || !are_slivers(c, whole));
 }
 
 typedef struct cover_sight { int is_open, is_open_without_portals; } cover_sight;
@@ -303,6 +346,7 @@ cells_status cells_cover(cells_build *b, cells_interface *found, bsp_vector *scr
     cover c = {.b = b, .points = scratch, .plane = found->plane, .bounds = bounds_of(points, found->point_count)};
     cells_status status = CELLS_FINE;
     found->open = found->by_portals = 0;
+    found->is_sliver = (uint32_t)is_sliver(b, extent_of(points, found->point_count));
     for (uint32_t side = 0; side < 2 && status == CELLS_FINE; side++) {
         cover_sight sight;
         status = cover_side(&c, found, points, side, &sight);

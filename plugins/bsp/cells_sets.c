@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 //
 // Invariant: a portal may be wider than its hole (joined ones are hulls), so it shuts an opening only where no air of this zone lies
-// behind: what it shuts by mistake would be lost, what it leaves open by mistake is only drawn too much.
+// behind: what it shuts by mistake would be lost, what it leaves open by mistake is only drawn too much. Slivers join nothing: between planes
+// that are one but for rounding they lead from the air into the rock, and all portals would stand open.
 #include "cells_build.h"
 
 static const double MOSTLY = 2; // times as much area
@@ -50,7 +51,7 @@ static void sets_make(cells_build *b)
     for (uint32_t i = 0; i < b->cells.count; i++) sets[i] = (cells_set){i, 0, 0};
     for (uint32_t i = 0; i < b->interfaces.count; i++) {
         const uint32_t u = root_of(sets, found[i].cells[0]), v = root_of(sets, found[i].cells[1]);
-        if (found[i].open == 3) sets[u > v ? u : v].root = u > v ? v : u;
+        if (found[i].open == 3 && !found[i].is_sliver) sets[u > v ? u : v].root = u > v ? v : u;
     }
     for (uint32_t i = 0; i < b->cells.count; i++) {
         cells_set *own = &sets[root_of(sets, i)];

@@ -72,6 +72,34 @@ if(TARGET plugin_bsp)
     "i < cell->opening_count; i++" "i < cell->opening_count; i += i % 8 == 1 ? 2u : 1u")
 endif()
 
+portcullis_mutant(octree shrinks-a-plane walk_body.h
+  "p.normal.z, -p.offset," "p.normal.z, -p.offset + (k == 0 ? 0.5f : 0),")
+portcullis_mutant(octree skips-a-leaf-in-61 walk_body.h
+  "f = put_leaf(f, touching," "f = put_leaf(f, (node->first_child + c) % 61 ? touching : 0,")
+portcullis_mutant(octree drops-what-a-parent-cuts walk_body.h
+  "out->cut &= out->touching;" "out->touching &= ~(out->cut & 0x80u); out->cut &= out->touching;")
+portcullis_mutant(octree forgets-the-last-of-a-leaf walk_body.h
+  "planes, split->planes[c]) & ((1u << count) - 1)" "planes, split->planes[c]) & ((1u << (count - 1)) - 1)")
+portcullis_mutant(octree keeps-boxes-too-small index.c
+  "{boxes[i].min.x, boxes[i].min.y, boxes[i].min.z, boxes[i].max.x, boxes[i].max.y" "{boxes[i].min.x, boxes[i].min.y, boxes[i].min.z, boxes[i].max.x, boxes[i].min.y")
+portcullis_mutant(octree loses-the-last-run walk_body.h
+  "    return run_count;" "    return run_count - (run_count > 8);")
+
+if(TARGET plugin_occlusion)
+  portcullis_mutant(occlusion believes-the-last-frame method_twophase.c
+    "else walk_pend(w, tree_entry_of_item(w->tree, place));" "else if (w->h->serial % 4 == 0) walk_pend(w, tree_entry_of_item(w->tree, place));")
+  portcullis_mutant(occlusion takes-few-pixels-for-none walk.c
+    "= a->pixels < UINT32_MAX ? a->pixels : 1;" "= a->pixels > 200 ? a->pixels : 0;")
+  portcullis_mutant(occlusion tests-a-corner walk.c
+    "const cull_box box = walk_box(w, h->pending[i]);" "cull_box box = walk_box(w, h->pending[i]); box.max = box.min;")
+  portcullis_mutant(occlusion skips-a-child method_twophase.c
+    "c < n->first_child + n->child_count; c++" "c < n->first_child + n->child_count; c += c % 4 == 1 ? 2u : 1u")
+  portcullis_mutant(occlusion ends-after-two-steps method_twophase.c
+    "if (h->pending_count && t.steps_left) {" "if (h->pending_count && t.steps_left > STEPS - 2) {")
+  portcullis_mutant(occlusion drops-what-its-guess-covers method_twophase.c
+    "cover_look(t->cover, &box) == COVER_FULL) walk_pend(w, top.entry);" "cover_look(t->cover, &box) == COVER_FULL) continue;")
+endif()
+
 add_test(NAME bench_reports_mutants COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/mutants.sh $<TARGET_FILE:portcullis> ${PROJECT_BINARY_DIR}/mutants
   ${PROJECT_SOURCE_DIR}/scenes)
 set_tests_properties(bench_reports_mutants PROPERTIES TIMEOUT ${PORTCULLIS_TEST_TIMEOUT} RESOURCE_LOCK gl SKIP_RETURN_CODE 77 LABELS "not_sanitized;not_by_clang")

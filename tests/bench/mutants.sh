@@ -15,9 +15,13 @@ failed=0
 prepare() {
   size=640x360
   case $1 in
-    frustum)
-      scene=$work/demo.obj views=$work/demo.views chains=frustum
+    frustum | octree)
+      scene=$work/demo.obj views=$work/demo.views chains=$1
       [ -f "$scene" ] || "$portcullis" generate demo -o "$scene" || exit 1
+      ;;
+    occlusion)
+      scene=$work/city.boxes views='auto:24 auto:walk:100' chains='occlusion frustum+occlusion'
+      [ -f "$scene" ] || "$portcullis" generate city -n 3000 -o "$scene" || exit 1
       ;;
     portal | bsp)
       scene=$work/cellar.pcs views=auto:edges:32 size=320x180

@@ -1,0 +1,68 @@
+// One viewer's memory of a zone: what was seen, what the ledger says, and the lists of the frame under way.
+// Invariant: it is a guess about what to do first. Only answers of this frame (age 0) take an item away.
+// SPDX-License-Identifier: MIT
+#ifndef OCCLUSION_HISTORY_H
+#define OCCLUSION_HISTORY_H
+
+#include "heap.h"
+#include "tree.h"
+
+// What became of the tests, summed over the frames of a viewer.
+typedef struct occlusion_counters {
+    uint64_t frames, tests;
+    uint64_t waited;     // of them, in steps that waited for their answers
+    uint64_t wasted;     // answered "seen" for an entry not drawn yet: it took nothing away
+    uint64_t unanswered; // in a frame that needed them
+    uint64_t age_sum, late_answers; // of answers to tests of earlier frames
+    uint64_t off_units;  // units drawn without tests, summed over frames
+} occlusion_counters;
+
+// What a unit's tests removed, against what they cost; see ledger.h.
+typedef struct ledger_page {
+    uint32_t tests, spent, gained; // answered; what they cost and took away
+    uint32_t off_until, on_since;  // serials of frames
+    uint32_t level;                // the next pause: 2^level frames
+    uint32_t drawn;                // items, when it was switched off
+    uint32_t is_off, is_known;     // known: looked at before
+} ledger_page;
+
+// Flags of an item: seen, how often in a row, and found hidden in the frame that had drawn it already.
+enum { ITEM_SEEN = 1, ITEM_LOST = 2, ITEM_CALM_SHIFT = 2 };
+
+typedef struct occlusion_history {
+    const occlusion_tree *tree;
+    uint8_t *items;       // by place: flags of the method
+    uint8_t *nodes;       // by node: flags of the method
+    uint32_t *open_until; // by node: the frame until which its parts are tested and not itself
+    uint32_t *kept_below; // by node: items seen and units off, at and under it
+    uint32_t *drawn;      // by place: serial of the frame that drew it last
+    uint32_t *seen_list, *drawn_list; // places seen last frame; drawn in this one
+    ledger_page *pages;   // by node, of units
+    uint64_t *masked;     // by place: not a candidate, or a picture stands for it. Empty without mask_used
+    uint32_t *node_marks; // by node: serial of the frame that has candidates below it; candidates only
+    heap_entry *heap;     // room for every entry
+    tree_entry *pending;  // entries tested and not decided
+    uint32_t *pixels;     // the answers to them
+    ledger_page movers, zone;
+    occlusion_counters counters;
+    uint32_t seen_count, drawn_count, heap_count, pending_count, tested_count;
+    uint32_t serial, last_frame, first_run, mask_used, says_places, phase, mover_capacity, test_most;
+} occlusion_history;
+
+typedef struct history_request {
+    const occlusion_tree *tree;
+    uint32_t mover_capacity;
+} history_request;
+
+// On failure nothing is left behind.
+cull_result history_open(const cull_host *host, const history_request *q, occlusion_history *out);
+void history_close(const cull_host *host, occlusion_history *h);
+
+// Marks an item seen, or not, in all nodes above it.
+void history_see(occlusion_history *h, uint32_t place);
+void history_lose(occlusion_history *h, uint32_t place);
+void history_keep(occlusion_history *h, uint32_t node, int change); // change: +1 or -1, at the node and above
+// Ends a frame: what was seen and is not drawn any more is forgotten, the drawn is the seen of the next.
+void history_turn(occlusion_history *h);
+
+#endif
