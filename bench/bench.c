@@ -86,7 +86,8 @@ static result find_truth(run *b, uint32_t k)
 {
     const strategy *s = &b->strategies[k];
     truth *t = truth_of(b, k);
-    const truth_request request = {b->q->scene, b->q->width_px * b->q->samples, b->q->height_px * b->q->samples, s->walls};
+    const uint32_t samples = b->q->samples ? b->q->samples : 1;
+    const truth_request request = {b->q->scene, b->q->width_px * samples, b->q->height_px * samples, s->walls};
     result done = truth_open(&request, b->q->services->memory, b->r, t);
     for (uint32_t v = 0; v < b->q->path->count && done == RESULT_OK; ++v) {
         progress_tell(&b->bar, "truth");
@@ -286,7 +287,7 @@ static result open_result(const bench_request *q, report *r, bench_result *out)
     const scene *s = q->scene;
     *out = (bench_result){.memory = q->services->memory, .row_count = q->strategy_count, .views = q->path->count,
                           .zones = s->zone_count, .portals = s->portal_count,
-                          .pixels = (uint64_t)q->width_px * q->height_px, .items_total = s->item_count};
+                          .pixels = (uint64_t)q->width_px * q->height_px * (q->samples ? q->samples * q->samples : 1), .items_total = s->item_count};
     out->rows = memory_alloc_zeroed(out->memory, q->strategy_count, sizeof *out->rows);
     if (!out->rows) return report_no_memory(r, NULL);
     for (uint32_t k = 0; k < q->strategy_count; ++k) out->rows[k].name = q->strategies[k].name;

@@ -29,7 +29,7 @@ typedef struct bench_request {
     loader *plugins;
     const host_services *services;
     uint32_t strategy_count, width_px, height_px, repeat, query_latency;
-    uint32_t samples; // the truth is a picture this many times as wide and high; 1 to BENCH_SAMPLES_MOST. images only with 1
+    uint32_t samples; // the truth is a picture this many times as wide and high; 1 to BENCH_SAMPLES_MOST; 0 as 1. images only with 1
     bench_truth truth;
     bench_ids ids;
     const char *images; // folder for pictures, NULL: none

@@ -35,10 +35,11 @@ static int has_bit(const uint32_t *bits, uint32_t i)
 }
 
 // A zone without a chain lists nothing and drops nothing: its movers are drawn.
+// SAMPLED is about the pixels of the view: what lies between them it never promised.
 static int promises_all(const strategy *s, uint32_t zone)
 {
     const chain *c = world_chain(s->world, zone);
-    return !c || c->promises & (CULL_SAMPLED | CULL_CONSERVATIVE);
+    return !c || c->promises & CULL_CONSERVATIVE || (c->promises & CULL_SAMPLED && s->q->samples <= 1);
 }
 
 static void blame_movers(const strategy *s, uint32_t zone, uint32_t *bits)

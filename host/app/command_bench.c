@@ -112,6 +112,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         break;
     case ARGP_KEY_END:
         if (!a->scene) argp_error(state, "SCENE is missing");
+        if (a->truth == BENCH_NO_TRUTH && a->samples > 1) argp_error(state, "--samples is about the truth: leave --no-truth out");
         if (a->images && a->samples > 1) argp_error(state, "--images shows pixels: leave --samples out");
         if (a->size.width_px * a->samples > APP_SIDE_MOST || a->size.height_px * a->samples > APP_SIDE_MOST)
             argp_error(state, "--size times --samples is over %d: a picture of %d x %d samples is the largest", APP_SIDE_MOST, APP_SIDE_MOST, APP_SIDE_MOST);

@@ -119,6 +119,18 @@ static flow_node *node_new(flow *f, const crossing *c, uint32_t planes)
     return n;
 }
 
+static int is_by_entry(const flow_crosser *c, uint32_t zone)
+{
+    return c->is_by_entry && c->is_by_entry(c->user, zone);
+}
+
+// What has the same source: all of it, unless the zone's culler would see less of it from the portal that it came in through.
+static int holds_source(const flow *f, const crossing *c, const flow_node *n)
+{
+    if (n->source != c->from->source) return 0;
+    return !n->entry || n->entry == f->entries[c->way] || !is_by_entry(&c->request->crosser, c->target);
+}
+
 static void same_add(flow *f, const crossing *c)
 {
     const flow_node *from = c->from;
@@ -128,7 +140,7 @@ static void same_add(flow *f, const crossing *c)
     }
     const flow_state *s = flow_reach(f, c->target, c->key);
     for (uint32_t i = 0; i < s->count; i++)
-        if (f->nodes[s->nodes[i]].source == from->source) {
+        if (holds_source(f, c, &f->nodes[s->nodes[i]])) {
             flow_nearer(f, &f->nodes[s->nodes[i]], c->key);
             return;
         }
@@ -150,11 +162,6 @@ static flow_record record_find(const flow_node *from, cull_plane plane)
     for (uint32_t i = 0; i < from->plane_count; i++)
         if (memcmp(&from->planes[i], &plane, sizeof plane) == 0) return from->records[i];
     return (flow_record){plane, from->zone};
-}
-
-static int is_by_entry(const flow_crosser *c, uint32_t zone)
-{
-    return c->is_by_entry && c->is_by_entry(c->user, zone);
 }
 
 // What goes on from there passes no portal before the plane of its entry, whatever planes the crosser wrote: who lies in

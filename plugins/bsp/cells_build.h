@@ -49,7 +49,7 @@ typedef struct cells_interface { // between the cell in front of a node's plane 
 } cells_interface;
 
 // Cells joined by openings that are open both ways. Of a root: areas of the one-sided walls that face its cells, and turn away.
-typedef struct cells_set { uint32_t root; double fronts, backs; } cells_set;
+typedef struct cells_set { uint32_t root, has_slivers; double fronts, backs; } cells_set; // has_slivers: open ones that lead to another set
 
 typedef struct cells_build {
     const cull_host *host;

@@ -334,7 +334,7 @@ static cells_status cover_side(cover *c, const cells_interface *found, const cul
     cover_step step = COVER_DONE;
     for (uint32_t of = 0; of < 2 && step == COVER_DONE; of++) step = subtract_walls(c, walls_of(c->b, found, of), of, side);
     out->is_open_without_portals = is_left_open(c, step, whole);
-    for (uint32_t of = 0; of < 2 && step == COVER_DONE; of++) step = subtract_portals(c, found->cells[of], side);
+    if (step == COVER_DONE) step = subtract_portals(c, found->cells[side], side); // one in the cell beyond ends that cell, not the way there
     out->is_open = is_left_open(c, step, whole);
     if (step == COVER_GIVEN_UP) c->b->given_up++;
     return step == COVER_NO_MEMORY ? CELLS_NO_MEMORY : CELLS_FINE;

@@ -48,10 +48,14 @@ static void sets_make(cells_build *b)
     const cells_interface *found = b->interfaces.items;
     const bsp_cell *cells = b->cells.items;
     cells_set *sets = b->sets.items;
-    for (uint32_t i = 0; i < b->cells.count; i++) sets[i] = (cells_set){i, 0, 0};
+    for (uint32_t i = 0; i < b->cells.count; i++) sets[i] = (cells_set){i, 0, 0, 0};
     for (uint32_t i = 0; i < b->interfaces.count; i++) {
         const uint32_t u = root_of(sets, found[i].cells[0]), v = root_of(sets, found[i].cells[1]);
         if (found[i].open == 3 && !found[i].is_sliver) sets[u > v ? u : v].root = u > v ? v : u;
+    }
+    for (uint32_t i = 0; i < b->interfaces.count; i++) {
+        const uint32_t u = root_of(sets, found[i].cells[0]), v = root_of(sets, found[i].cells[1]);
+        if (found[i].open && u != v) sets[u].has_slivers |= found[i].is_sliver, sets[v].has_slivers |= found[i].is_sliver;
     }
     for (uint32_t i = 0; i < b->cells.count; i++) {
         cells_set *own = &sets[root_of(sets, i)];
@@ -61,16 +65,22 @@ static void sets_make(cells_build *b)
 }
 
 // A zone with holes to the rock is one set of both, and one where walls hang free is too: neither has any rock.
+static int turns_its_back(const cells_set *set)
+{
+    return set->backs > MOSTLY * set->fronts;
+}
+
+// Behind a sliver air may go on: what leads to one is never called rock for sure.
 int cells_is_rock(cells_build *b, uint32_t cell)
 {
     const cells_set *set = (const cells_set *)b->sets.items + cells_root(b, cell);
-    return set->backs > MOSTLY * set->fronts;
+    return turns_its_back(set) && !set->has_slivers;
 }
 
 int cells_is_air(cells_build *b, uint32_t cell)
 {
     const cells_set *set = (const cells_set *)b->sets.items + cells_root(b, cell);
-    return set->fronts > 0 && !cells_is_rock(b, cell);
+    return set->fronts > 0 && !turns_its_back(set);
 }
 
 static uint32_t reopen(cells_build *b)

@@ -68,16 +68,16 @@ void flow_shape_make(const flow *f, const cull_vec3 *points, uint32_t count, flo
     out->distance = flow_shape_distance(out);
 }
 
-// Until no corner is outside; of one beside or behind the eye a shift says nothing, and the line goes.
+// Until no corner is outside. A shift moves what lies behind the eye the other way: where that leaves a corner outside, the line goes.
 static window_line line_widened(const flow_shape *s, window_line l)
 {
     double out_by = 0;
     for (uint32_t k = 0; k < s->count; k++) {
         const double at = (l.a * s->x[k] + l.b * s->y[k]) + l.c * s->z[k];
-        if (at >= 0) continue;
-        if (!(s->z[k] > 0)) return (window_line){0, 0, 1};
-        out_by = -at / s->z[k] > out_by ? -at / s->z[k] : out_by;
+        if (at < 0 && s->z[k] > 0) out_by = -at / s->z[k] > out_by ? -at / s->z[k] : out_by;
     }
+    for (uint32_t k = 0; k < s->count; k++)
+        if (!(s->z[k] > 0) && !((l.a * s->x[k] + l.b * s->y[k]) + (l.c + out_by) * s->z[k] >= 0)) return (window_line){0, 0, 1};
     return (window_line){l.a, l.b, l.c + out_by};
 }
 

@@ -272,6 +272,13 @@ static void exits_open(flow *f, const window *w)
     for (uint32_t i = 0; i < f->cells->portal_count; i++) flow_exit_add(f, i, w);
 }
 
+// The volume came in through a portal that borders no cell that is known.
+static int has_lost_entry(const flow *f, const cull_volume *volume)
+{
+    const uint32_t *offsets = f->cells->portal_offsets;
+    return volume->entry > 0 && volume->entry <= f->cells->portal_count && offsets[volume->entry - 1] == offsets[volume->entry];
+}
+
 int flow_start(flow *f)
 {
     const cull_visit *visit = f->q->visit;
@@ -286,6 +293,7 @@ int flow_start(flow *f)
         if (side == VOLUME_HOLDS_EYE && !is_in_air && !is_at_portal_now && !eye_is_in_box(f)) return 0;
         if (side == VOLUME_HOLDS_EYE) start_at_eye(f, &w, !is_in_air && is_at_portal_now ? START_AIR : START_ALL);
         if (side == VOLUME_HOLDS_EYE && !is_at_portal_now && f->q->exits == BSP_EXITS_KEPT && eye_is_behind_walls(f)) exits_open(f, &w);
+        if (side == VOLUME_BEYOND_EYE && has_lost_entry(f, &visit->volumes[v])) return 0;
         if (side == VOLUME_BEYOND_EYE) start_at_entry(f, &visit->volumes[v], &w);
         else if (!is_in_air) start_at_portals(f, FLOW_NOW, &w);
     }

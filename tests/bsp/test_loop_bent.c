@@ -123,11 +123,28 @@ static void no_line_of_any_edge_has_a_corner_outside_by_more_than_the_slack_allo
     assert_true(bent > 1000 && straight > 1000);
 }
 
+// The finding that named it: a corner before the eye lies a tenth outside, one behind the eye half of that inside.
+static void a_bent_polygon_that_reaches_behind_the_eye_loses_nothing_between(void **state)
+{
+    (void)state;
+    flow_shape s = {.x = {0, -0.1, 0.05, 1}, .y = {-1, -1, -1, -1}, .z = {3, 1, -1, 1}, .count = 4, .is_bent = 1};
+    s.x[4] = s.x[0], s.y[4] = s.y[0], s.z[4] = s.z[0];
+    window_line lines[FLOW_POINTS + 2];
+    flow_shape_edges(&s, (flow_margin){0, 0, 0}, lines);
+    for (uint32_t i = 0; i < 4; i++)
+        for (uint32_t k = 0; k < 4; k++)
+            for (int step = 0; step <= 100; step++) { // from corner k to the next, where that lies before the eye
+                const double t = step / 100.0, x = s.x[k] + t * (s.x[k + 1] - s.x[k]), y = s.y[k] + t * (s.y[k + 1] - s.y[k]), z = s.z[k] + t * (s.z[k + 1] - s.z[k]);
+                if (z > 0.01) assert_true((lines[i].a * x + lines[i].b * y) + lines[i].c * z >= -1e-12);
+            }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_edge_as_short_as_the_rounding_is_told),
         cmocka_unit_test(a_rectangle_whose_corners_float_holds_is_not_bent),
+        cmocka_unit_test(a_bent_polygon_that_reaches_behind_the_eye_loses_nothing_between),
         cmocka_unit_test(no_line_of_any_edge_has_a_corner_outside_by_more_than_the_slack_allows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
