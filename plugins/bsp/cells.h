@@ -24,6 +24,7 @@ typedef struct bsp_cell {
     uint32_t first_back, back_count;         // pieces whose back borders the cell: seen from here only from behind
     uint32_t first_touching, touching_count; // pieces that face other cells and touch this one: at their edges they share its pixels
     uint32_t apart_count;                    // of them, the first: no open way leads around to the cell that they face
+    uint32_t is_beyond;                      // 1: from the zone only a portal leads here: air of another zone, though walls of this one may show
 } bsp_cell;
 
 // The part of a zone portal that borders a cell from inside.

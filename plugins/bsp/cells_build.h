@@ -45,11 +45,12 @@ typedef struct cells_interface { // between the cell in front of a node's plane 
     uint32_t first_point, point_count; // in opening_points, counterclockwise seen from the front
     uint32_t open;                     // bit 0: for eyes in front, bit 1: for eyes behind
     uint32_t by_portals;               // the same bits: it is shut, and would be open but for the zone's portals
+    uint32_t at_portals;               // the same bits: some of it lies in portals that the cell on that side borders from inside
     uint32_t is_sliver;                // no circle of slack fits in
 } cells_interface;
 
 // Cells joined by openings that are open both ways. Of a root: areas of the one-sided walls that face its cells, and turn away.
-typedef struct cells_set { uint32_t root, has_slivers; double fronts, backs; } cells_set; // has_slivers: open ones that lead to another set
+typedef struct cells_set { uint32_t root, has_slivers, is_beyond; double fronts, backs; } cells_set; // has_slivers: open ones that lead to another set
 
 typedef struct cells_build {
     const cull_host *host;
@@ -79,7 +80,7 @@ cells_status cells_split(cells_build *b, bsp_vector *pieces);
 cells_status cells_find_openings(cells_build *b);
 // Sets found->open by the walls and portals that border its two cells.
 cells_status cells_cover(cells_build *b, cells_interface *found, bsp_vector *scratch);
-// Finds the sets of cells, and opens what a portal shut though air of this zone lies behind it.
+// Finds the sets of cells, says which lie beyond portals, and opens what a portal shut though air of this zone lies behind it.
 cells_status cells_find_sets(cells_build *b);
 uint32_t cells_root(cells_build *b, uint32_t cell);
 // Walls turn their backs on it, and nearly none a front.

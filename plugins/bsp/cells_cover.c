@@ -319,7 +319,14 @@ static int is_left_open(const cover *c, cover_step step, extent whole)
     return c->count > 0 && (step != COVER_DONE || is_sliver(c->b, whole) || !are_slivers(c, whole));
 }
 
-typedef struct cover_sight { int is_open, is_open_without_portals; } cover_sight;
+static double area_of(const cover *c)
+{
+    double sum = 0;
+    for (uint32_t i = 0; i < c->count; i++) sum += extent_of(fragment_points(c, c->fragments[i]), c->fragments[i].count).area;
+    return sum;
+}
+
+typedef struct cover_sight { int is_open, is_open_without_portals, is_at_portals; } cover_sight;
 
 static cells_status cover_side(cover *c, const cells_interface *found, const cull_point *points, uint32_t side, cover_sight *out)
 {
@@ -334,8 +341,10 @@ static cells_status cover_side(cover *c, const cells_interface *found, const cul
     cover_step step = COVER_DONE;
     for (uint32_t of = 0; of < 2 && step == COVER_DONE; of++) step = subtract_walls(c, walls_of(c->b, found, of), of, side);
     out->is_open_without_portals = is_left_open(c, step, whole);
+    const double area = area_of(c);
     if (step == COVER_DONE) step = subtract_portals(c, found->cells[side], side); // one in the cell beyond ends that cell, not the way there
     out->is_open = is_left_open(c, step, whole);
+    out->is_at_portals = out->is_open_without_portals && (step != COVER_DONE || area - area_of(c) > c->b->slack * whole.perimeter);
     if (step == COVER_GIVEN_UP) c->b->given_up++;
     return step == COVER_NO_MEMORY ? CELLS_NO_MEMORY : CELLS_FINE;
 }
@@ -345,7 +354,7 @@ cells_status cells_cover(cells_build *b, cells_interface *found, bsp_vector *scr
     const cull_point *points = (const cull_point *)b->opening_points.items + found->first_point;
     cover c = {.b = b, .points = scratch, .plane = found->plane, .bounds = bounds_of(points, found->point_count)};
     cells_status status = CELLS_FINE;
-    found->open = found->by_portals = 0;
+    found->open = found->by_portals = found->at_portals = 0;
     found->is_sliver = (uint32_t)is_sliver(b, extent_of(points, found->point_count));
     for (uint32_t side = 0; side < 2 && status == CELLS_FINE; side++) {
         cover_sight sight;
@@ -353,6 +362,7 @@ cells_status cells_cover(cells_build *b, cells_interface *found, bsp_vector *scr
         if (status != CELLS_FINE) continue;
         if (sight.is_open) found->open |= 1u << side;
         else if (sight.is_open_without_portals) found->by_portals |= 1u << side;
+        if (sight.is_at_portals) found->at_portals |= 1u << side;
     }
     return status;
 }

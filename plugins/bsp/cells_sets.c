@@ -48,7 +48,7 @@ static void sets_make(cells_build *b)
     const cells_interface *found = b->interfaces.items;
     const bsp_cell *cells = b->cells.items;
     cells_set *sets = b->sets.items;
-    for (uint32_t i = 0; i < b->cells.count; i++) sets[i] = (cells_set){i, 0, 0, 0};
+    for (uint32_t i = 0; i < b->cells.count; i++) sets[i] = (cells_set){.root = i};
     for (uint32_t i = 0; i < b->interfaces.count; i++) {
         const uint32_t u = root_of(sets, found[i].cells[0]), v = root_of(sets, found[i].cells[1]);
         if (found[i].open == 3 && !found[i].is_sliver) sets[u > v ? u : v].root = u > v ? v : u;
@@ -83,6 +83,26 @@ int cells_is_air(cells_build *b, uint32_t cell)
     return set->fronts > 0 && !turns_its_back(set);
 }
 
+// What lies on the far side of a portal, and of all ways to it without one. A portal that reaches over its hole into air of the zone
+// itself parts nothing.
+static void beyond_find(cells_build *b)
+{
+    const cells_interface *found = b->interfaces.items;
+    bsp_cell *cells = b->cells.items;
+    cells_set *sets = b->sets.items;
+    for (uint32_t i = 0; i < b->cells.count; i++) sets[i] = (cells_set){.root = i};
+    for (uint32_t i = 0; i < b->interfaces.count; i++) {
+        const uint32_t u = root_of(sets, found[i].cells[0]), v = root_of(sets, found[i].cells[1]);
+        if (found[i].open == 3 && !found[i].at_portals && !found[i].is_sliver) sets[u > v ? u : v].root = u > v ? v : u;
+    }
+    for (uint32_t i = 0; i < b->interfaces.count; i++)
+        for (uint32_t side = 0; side < 2; side++) {
+            const uint32_t in = root_of(sets, found[i].cells[side]), out = root_of(sets, found[i].cells[!side]);
+            if (found[i].at_portals >> side & 1 && in != out) sets[out].is_beyond = 1;
+        }
+    for (uint32_t i = 0; i < b->cells.count; i++) cells[i].is_beyond = sets[root_of(sets, i)].is_beyond;
+}
+
 static uint32_t reopen(cells_build *b)
 {
     cells_interface *found = b->interfaces.items;
@@ -99,6 +119,7 @@ static uint32_t reopen(cells_build *b)
 cells_status cells_find_sets(cells_build *b)
 {
     if (!vector_push(&b->sets, b->cells.count)) return CELLS_NO_MEMORY; // there is one cell at least
+    beyond_find(b);
     sets_make(b);
     if (reopen(b)) sets_make(b);
     return CELLS_FINE;

@@ -127,10 +127,11 @@ static uint32_t eye_cell(const flow *f)
     return at & ~BSP_LEAF;
 }
 
-// 1: the eye's own cell shows the front of a wall: it is air, of this zone. Else nothing is known.
+// 1: the eye's own cell shows the front of a wall and lies beyond no portal: it is air, of this zone. Else nothing is known.
 static int eye_is_in_air(const flow *f)
 {
-    return cell_has_front(f, eye_cell(f));
+    const uint32_t cell = eye_cell(f);
+    return cell_has_front(f, cell) && !f->cells->cells[cell].is_beyond;
 }
 
 // 1: the eye's own cell shows walls from behind alone.
