@@ -305,9 +305,10 @@ static result run_all(run *b)
     if (done == RESULT_OK && b->q->truth == BENCH_TRUTH) done = find_truths(b);
     if (done == RESULT_OK) done = run_passes(b);
     for (uint32_t k = 0; k < b->q->strategy_count && done == RESULT_OK; ++k) {
+        done = strategy_ask_figures(&b->strategies[k], b->r);
         close_row(b, &b->out->rows[k], &b->strategies[k]);
         close_times(b, &b->out->rows[k], &b->strategies[k]);
-        if (b->q->images) done = bench_images(&b->strategies[k], truth_of(b, k), &b->out->rows[k], b->r);
+        if (done == RESULT_OK && b->q->images) done = bench_images(&b->strategies[k], truth_of(b, k), &b->out->rows[k], b->r);
     }
     progress_end(&b->bar);
     b->out->plugins_opened = loader_libraries_open(b->q->plugins);

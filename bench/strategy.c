@@ -83,6 +83,13 @@ result strategy_restart(strategy *s, report *r)
     return world_view_open(s->world, VIEWER_CHECK_BOUNDS, r, &s->view);
 }
 
+result strategy_ask_figures(strategy *s, report *r)
+{
+    const result done = strategy_restart(s, r);
+    if (done == RESULT_OK) chains_figures(s);
+    return done;
+}
+
 void strategy_close(strategy *s)
 {
     if (!s->q) return;

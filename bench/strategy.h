@@ -61,7 +61,7 @@ typedef struct strategy {
     strategy_times times;    // since it was opened
     double build_ms;         // of the chains it was opened with
     size_t index_bytes;
-    bench_figures figures;  // of these chains' indices
+    bench_figures figures;  // see strategy_ask_figures
     uint32_t words, order_count, indices_built;
 } strategy;
 
@@ -73,6 +73,8 @@ result strategy_attach(strategy *s, renderer *g, report *r);
 
 // A new view without history, pictures or tests: what each pass over the path starts with.
 result strategy_restart(strategy *s, report *r);
+// After the passes: what the chains tell of their indices, and of the views there were, which end for it.
+result strategy_ask_figures(strategy *s, report *r);
 // One view: moves movers, swaps chains when it is time, culls, draws where there is a renderer. gl_ms: 0 without. Leaves D
 // in drawn_bits, unless it is not wanted: marking reads as much memory as culling, and would push the culler's out of the
 // caches before the next view. Allocates nothing but in swaps.

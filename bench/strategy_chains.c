@@ -170,10 +170,16 @@ result chains_open(strategy *s, report *r)
         done = take_chain(s, z, r);
         s->build_ms += c->build_ms;
         s->index_bytes += c->index_bytes;
-        figures_add_chain(&s->figures, c);
         s->indices_built++;
     }
     return done;
+}
+
+void chains_figures(strategy *s)
+{
+    s->figures.count = 0;
+    for (uint32_t z = 0; z < s->q->scene->zone_count; ++z)
+        if (world_chain(s->world, z)) figures_add_chain(&s->figures, world_chain(s->world, z));
 }
 
 void chains_close(strategy *s)

@@ -9,6 +9,7 @@
 // A world with the first set; order and pictures of each zone. What it allocates strategy_close frees.
 result chains_open(strategy *s, report *r);
 void chains_close(strategy *s);
+void chains_figures(strategy *s); // what the chains that stand tell now
 // All zones to what they have in that view, with layout and slots. Does nothing where that is so already.
 result chains_turn(strategy *s, uint32_t view, report *r);
 result chains_tell_slots(strategy *s, report *r); // to layout and renderer; there must be a layout

@@ -352,8 +352,8 @@ typedef struct cull_ray {
     uint32_t (*box)(const cull_culler *, const cull_box *, cull_run *runs, uint32_t max_runs);                 // [any]
 } cull_ray;
 
-// Extension "cull.figures/1" of a built culler: cull_figures, numbers about its index for a person and the bench, valid and
-// unchanged from build to destroy. A name is a word of [a-z0-9_] with its unit, if any, at its end.
+// Extension "cull.figures/1" of a built culler: cull_figures, numbers about its index for a person and the bench, valid from
+// build to destroy. What counts how it was used changes when a query closes, and only then: read it [main]. A name is a word of [a-z0-9_] with its unit, if any, at its end.
 #define CULL_EXT_FIGURES "cull.figures/1"
 typedef uint32_t cull_figure_sort;
 enum { CULL_FIGURE_SUM = 0, CULL_FIGURE_MAX = 1 }; // what the figures of several zones come to

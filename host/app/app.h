@@ -7,7 +7,7 @@
 #include "../import/import.h"
 #include "../render/render.h"
 
-#define APP_VIEWS "FILE|auto:N|auto:walk:N|auto:edges:N|path:NAME" // what --views takes
+#define APP_VIEWS "FILE|auto:[walk:|street:|roofs:|turn:|edges:]N|path:NAME" // what --views takes
 
 enum { EXIT_GOOD = 0, EXIT_CHECK_FAILED = 1, EXIT_USAGE = 2, EXIT_NO_GL = 3 };
 

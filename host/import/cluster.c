@@ -174,6 +174,17 @@ static void apply_cut(splitter *s, range r, const cut *c)
     }
 }
 
+// Trees of one object, stones of one scree: two boxes come to so much less than the one that it is no cluster, however few its
+// triangles. A surface that hangs together comes to 0.9 of its cost and stays.
+static const double SCATTERED = 0.65;
+
+static int is_scattered(const splitter *s, range r, uint64_t triangles)
+{
+    grid_box box = empty_box();
+    for (uint32_t i = r.first; i < r.first + r.count; ++i) grow(&box, &s->boxes[s->order[0][i]]);
+    return choose_cut(s, r).cost < SCATTERED * side_cost(&box, triangles);
+}
+
 static uint64_t triangles_in(const splitter *s, range r)
 {
     uint64_t sum = 0;
@@ -189,7 +200,7 @@ static result split_all(splitter *s, uint32_t count, buffer *todo, uint32_t *clu
     while (todo->count) {
         const range r = ((const range *)todo->items)[--todo->count];
         const uint64_t triangles = triangles_in(s, r);
-        if (r.count == 1 || triangles <= CLUSTER_TRIANGLES_MOST) {
+        if (r.count == 1 || (triangles <= CLUSTER_TRIANGLES_MOST && !is_scattered(s, r, triangles))) {
             for (uint32_t i = r.first; i < r.first + r.count; ++i) cluster_of[s->order[0][i]] = clusters;
             clusters++;
             continue;
@@ -205,11 +216,9 @@ static result split_all(splitter *s, uint32_t count, buffer *todo, uint32_t *clu
 
 result cluster_split(const cluster_polygon *polygons, uint32_t count, arena *scratch, uint32_t *cluster_of, uint32_t *out_count)
 {
-    uint64_t triangles = 0;
-    for (uint32_t i = 0; i < count; ++i) triangles += polygons[i].triangles;
-    if (count <= 1 || triangles <= CLUSTER_TRIANGLES_MOST) {
+    if (count <= 1) {
         memset(cluster_of, 0, count * sizeof *cluster_of);
-        *out_count = count ? 1 : 0;
+        *out_count = count;
         return RESULT_OK;
     }
     splitter s = {.polygons = polygons, .boxes = arena_push(scratch, count, sizeof *s.boxes), .spare = arena_push(scratch, count, sizeof(uint32_t))};

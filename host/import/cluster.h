@@ -13,7 +13,7 @@ typedef struct cluster_polygon {
     uint32_t triangles;
 } cluster_polygon;
 
-// cluster_of[i] is 0 .. *out_count - 1, spatial neighbours near each other. A polygon is never split: one of more than
+// What is scattered is split further: a cluster's box shall not be mostly air. cluster_of[i] is 0 .. *out_count - 1, spatial neighbours near each other. A polygon is never split: one of more than
 // 128 triangles is a cluster of its own. The same for a mesh moved by whole metres. Scratch stays in the arena.
 result cluster_split(const cluster_polygon *polygons, uint32_t count, arena *scratch, uint32_t *cluster_of, uint32_t *out_count);
 

@@ -144,7 +144,7 @@ result auto_views_open(const scene *s, double aspect, const allocator *memory, r
                         .places = buffer_make(memory, sizeof(eye))};
     find_bounds(out);
     out->looks_from_afar = is_tiny_or_flat(out);
-    for (uint32_t i = 0; i < s->item_count && !out->has_boxes; ++i) out->has_boxes = (s->items[i].flags & CULL_ITEM_BOX) != 0;
+    for (uint32_t i = 0; i < s->item_count; ++i) *(s->items[i].flags & CULL_ITEM_BOX ? &out->has_boxes : &out->has_meshes) = 1;
     if (free_space_open(s, out->origin, memory, &out->space) != RESULT_OK) return report_no_memory(r, s->path);
     const result done = find_places(out);
     if (done != RESULT_OK) auto_views_close(out);
@@ -180,15 +180,15 @@ static int has_room(const auto_views *a, const double at[3])
 static int is_free(const auto_views *a, const double at[3])
 {
     if (!has_room(a, at)) return 0;
-    return a->has_boxes || a->scene->is_map || !free_space_is_enclosed(a->space, at);
+    return a->scene->is_map || !a->has_meshes || !free_space_is_enclosed(a->space, at);
 }
 
-// Boxes stand on the lowest place of their scene; a mesh has ground where it says so, and none beyond its edge.
+// Boxes alone stand on the lowest place of their scene; a mesh has ground where it says so, and none beyond its edge.
 static int stand(const auto_views *a, double at[3], uint32_t i)
 {
     const int on_ground = i % 2 == 0; // the other half of the eyes is anywhere over it
     if (!auto_is_ground(a)) return 1;
-    const double height = a->has_boxes || a->scene->is_map ? at[1] - a->low[1] : free_space_ground(a->space, at);
+    const double height = !a->has_meshes || a->scene->is_map ? at[1] - a->low[1] : free_space_ground(a->space, at);
     if (on_ground) at[1] += AUTO_EYE_HEIGHT_M - height;
     return isfinite(height);
 }
@@ -225,6 +225,13 @@ static double way_out(const auto_views *a, const double at[3], const double way[
 
 typedef enum side { WITHIN_BOUNDS, OUT_OF_BOUNDS } side;
 
+// Ground is a sheet: from beside it one may look under it, and into zones from behind their walls, where nobody can be.
+static double lowest_eye(const auto_views *a, const double at[3])
+{
+    const int is_beside = at[0] < a->low[0] || at[0] > a->high[0] || at[2] < a->low[2] || at[2] > a->high[2];
+    return is_beside && a->scene->zone_count > 1 ? INFINITY : a->low[1] + AUTO_EYE_HEIGHT_M;
+}
+
 // Of a mesh: back from a place in its middle half, to somewhere within its bounds, or out of them and within those half
 // as large again. So the yaw is anyone's, and yet the view looks across the mesh.
 static int mesh_camera(auto_views *a, double yaw, side where, camera *out)
@@ -240,7 +247,7 @@ static int mesh_camera(auto_views *a, double yaw, side where, camera *out)
         const double edge = way_out(a, at, back, 0), from = where == WITHIN_BOUNDS ? 0 : edge;
         const double way = random_between(&a->random, from, where == WITHIN_BOUNDS ? edge : way_out(a, at, back, 0.5));
         for (int k = 0; k < 3; ++k) at[k] += way * back[k];
-        if ((auto_is_ground(a) && at[1] < a->low[1] + AUTO_EYE_HEIGHT_M) || !is_free(a, at)) continue;
+        if ((auto_is_ground(a) && at[1] < lowest_eye(a, at)) || !is_free(a, at)) continue;
         *out = auto_camera(a, at, yaw, pitch);
         return 1;
     }

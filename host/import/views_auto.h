@@ -1,5 +1,5 @@
-// Automatic views: where an eye may stand, and the cameras made of such places. Between views_auto.c, views_walk.c
-// and views_edges.c.
+// Automatic views: where an eye may stand, and the cameras made of such places. Between views_auto.c, views_walk.c,
+// views_roofs.c and views_edges.c.
 // SPDX-License-Identifier: MIT
 // Invariant: nothing but constants and the scene's own data enters, so the same scene gives the same views; and of the
 // movers only their solids, which stand both shut and open, so doors change no view.
@@ -27,7 +27,7 @@ typedef struct auto_views {
     double aspect;
     random_stream random;
     buffer places; // eye: of point entities in air, shuffled
-    int has_boxes;
+    int has_boxes, has_meshes; // items that are boxes, and others
     int looks_from_afar; // tiny, flat, or without a place to stand: the eyes are set back from it
 } auto_views;
 
@@ -43,6 +43,9 @@ eye auto_place(auto_views *a, uint32_t i);                   // number i of the 
 
 result auto_views_make(auto_views *a, uint32_t count, camera *cameras);
 result auto_walk_make(auto_views *a, uint32_t count, camera *cameras);
+result auto_street_make(auto_views *a, uint32_t count, camera *cameras);
+result auto_turn_make(auto_views *a, uint32_t count, camera *cameras);
+result auto_roofs_make(auto_views *a, uint32_t count, camera *cameras);
 result auto_edges_make(auto_views *a, uint32_t count, camera *cameras); // BAD_INPUT, reported: no place for one
 
 #endif

@@ -312,29 +312,43 @@ double free_space_clearance(const free_space *space, const double p[3], double m
 
 typedef struct axis_hit { double distance; int is_back; } axis_hit;
 
-static void hit_parts(const free_space *space, const uint32_t *numbers, size_t count, const double p[3], axis_ray ray, axis_hit *hit)
+// How far along the ray the box's side that faces its start lies; INFINITY where it starts within, beyond or beside.
+static double box_along_axis(const double p[3], axis_ray ray, const space_part *box)
+{
+    for (int k = 0; k < 3; ++k)
+        if (k != ray.axis && (p[k] < box->min[k] || p[k] > box->max[k])) return INFINITY;
+    const double at = ray.sign > 0 ? box->min[ray.axis] - p[ray.axis] : p[ray.axis] - box->max[ray.axis];
+    return at >= 0 ? at : INFINITY;
+}
+
+typedef struct axis_search { const double *from; axis_ray ray; uint32_t what; } axis_search; // what: SPACE_TRIANGLES and SPACE_BOXES only
+
+static void hit_parts(const free_space *space, const uint32_t *numbers, size_t count, const axis_search *q, axis_hit *hit)
 {
     const space_part *parts = space->parts.items;
     for (size_t i = 0; i < count; ++i) {
         const space_part *part = &parts[numbers[i]];
-        if (part->kind != PART_TRIANGLE) continue;
-        double facing;
-        const double at = distance_along_axis(p, ray, (const double(*)[3])space->triangles.items + (size_t)part->first * 3, &facing);
+        double facing = 0, at;
+        if (!(part->what & q->what) || part->kind == PART_SOLID) continue;
+        if (part->kind == PART_BOX) at = box_along_axis(q->from, q->ray, part);
+        else at = distance_along_axis(q->from, q->ray, (const double(*)[3])space->triangles.items + (size_t)part->first * 3, &facing);
         if (at >= hit->distance) continue;
         *hit = (axis_hit){at, facing > 0};
     }
 }
 
-static axis_hit first_hit(const free_space *space, const double p[3], axis_ray ray)
+static axis_hit first_hit(const free_space *space, const axis_search *q)
 {
+    const double *p = q->from;
+    const axis_ray ray = q->ray;
     axis_hit hit = {INFINITY, 0};
     uint32_t cell[3];
     for (int k = 0; k < 3; ++k) cell[k] = cell_of(space, p[k], k);
-    hit_parts(space, space->wide.items, space->wide.count, p, ray, &hit);
+    hit_parts(space, space->wide.items, space->wide.count, q, &hit);
     const uint32_t *first = space->cell_first.items, *listed = space->cell_parts.items;
     for (;;) {
         const size_t c = cell_index(space, cell[0], cell[1], cell[2]);
-        hit_parts(space, listed + first[c], first[c + 1] - first[c], p, ray, &hit);
+        hit_parts(space, listed + first[c], first[c + 1] - first[c], q, &hit);
         const double border = space->low[ray.axis] + (cell[ray.axis] + (ray.sign > 0)) * space->cell_size[ray.axis];
         if (hit.distance <= (border - p[ray.axis]) * ray.sign) return hit; // nothing nearer lies behind this cell
         if (cell[ray.axis] == (ray.sign > 0 ? space->cells[ray.axis] - 1 : 0)) return hit;
@@ -347,7 +361,7 @@ int free_space_is_enclosed(const free_space *space, const double p[3])
     int backs = 0, fronts = 0;
     for (int axis = 0; axis < 3; ++axis)
         for (int sign = -1; sign <= 1; sign += 2) {
-            const axis_hit hit = first_hit(space, p, (axis_ray){axis, sign});
+            const axis_hit hit = first_hit(space, &(axis_search){p, {axis, sign}, SPACE_TRIANGLES});
             if (isinf(hit.distance)) continue;
             if (hit.is_back) ++backs;
             else ++fronts;
@@ -357,6 +371,11 @@ int free_space_is_enclosed(const free_space *space, const double p[3])
 
 double free_space_ground(const free_space *space, const double p[3])
 {
-    const axis_hit hit = first_hit(space, p, (axis_ray){1, -1});
+    const axis_hit hit = first_hit(space, &(axis_search){p, {1, -1}, SPACE_TRIANGLES | SPACE_BOXES});
     return hit.is_back ? INFINITY : hit.distance;
+}
+
+double free_space_along(const free_space *space, const double p[3], axis_ray ray)
+{
+    return first_hit(space, &(axis_search){p, ray, SPACE_TRIANGLES | SPACE_BOXES}).distance;
 }

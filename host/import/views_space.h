@@ -6,6 +6,7 @@
 #define PORTCULLIS_HOST_VIEWS_SPACE_H
 
 #include "../core/scene.h"
+#include "views_distance.h"
 
 enum { // what counts
     SPACE_SOLIDS = 1u << 0,    // structure and entities
@@ -26,7 +27,9 @@ double free_space_clearance(const free_space *space, const double p[3], double m
 // under the ground.
 int free_space_is_enclosed(const free_space *space, const double p[3]);
 
-// How far below p the front of a triangle is the first thing met: ground to stand on. INFINITY where it isn't.
+// How far below p the front of a triangle or a box is the first thing met: ground to stand on. INFINITY where it isn't.
 double free_space_ground(const free_space *space, const double p[3]);
+// How far along the ray from p the first triangle, of either side, or box is met. INFINITY: none.
+double free_space_along(const free_space *space, const double p[3], axis_ray ray);
 
 #endif

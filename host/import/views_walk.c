@@ -1,11 +1,13 @@
 // Automatic views auto:walk:N: a walker that looks ahead along arcs, prefers where it hasn't been, and turns back along
-// its own trail at dead ends.
+// its own trail at dead ends. auto:street:N: on the ground under the open sky, a view every few steps. auto:turn:N: the walk
+// of one who spins.
 // SPDX-License-Identifier: MIT
 // Invariant: every step is AUTO_STEP_M long; its middle and its end keep AUTO_CLEARANCE_M from all geometry, so no wall,
 // however thin, is walked through (the balls at 0.15 m from one another overlap).
 #include "views_auto.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -13,8 +15,8 @@ enum {
     PLAN_FRAMES = 4,  // walked before looking again
     TURNS = 13,       // arcs tried, straight on first
     START_WAYS = 32,  // headings tried where a walk begins
-    START_TRIES = 64, // places tried
-    STARTS_WALKED = 8, // of them, for TRIAL_FRAMES each
+    START_TRIES = 64, STREET_TRIES = 512, // places tried
+    STARTS_WALKED = 8, STREETS_WALKED = 32, // of them, for TRIAL_FRAMES each
     TRIAL_FRAMES = 300,
     LEAVE_FRAMES = 12, // free frames that an arc off the trail must have
     PATIENCE_FRAMES = 40, // of going back until a place seen once more often is good enough to leave for
@@ -28,14 +30,22 @@ static const double LOOK_PART = 0.25;       // of the way to the heading that th
 static const double PITCH_MOST_DEG = 15, PITCH_TURN_DEG = 0.5;
 static const uint32_t PITCH_FRAMES = 50;    // a new pitch is wanted this often
 static const uint32_t WHIM_FRAMES = 60;     // a new side is preferred this often
+static const uint32_t STREET_STRIDE = 8;    // steps from view to view: 2.4 m, short of what the bench calls a jump
+static const double STREET_CLEARANCE_M = 0.5, STREET_RISE_M = 0.3; // at most, a step: stairs
+static const double STREET_WIDE_M = 40;     // to what stands beside it
+static const double STREET_SPREAD_M = 1;    // of heights where a walk in streets may begin
+static const double SPIN_DEG = 15;          // a frame
 static const double REGION_MOST_M = 32, REGION_LEAST_M = 4; // how far round a model one may walk
 
 typedef struct visit_cell { int32_t x, y, z; uint32_t count; } visit_cell;
 
 typedef struct arc { double turn, slope, score; int free_frames; } arc;
 
+typedef enum walk_style { WALK_AIR, WALK_STREET, WALK_TURN } walk_style;
+
 typedef struct walker {
     auto_views *a;
+    walk_style style;
     double low[3], high[3]; // where it may go
     double clearance;
     double at[3], heading;  // heading of the last step
@@ -85,11 +95,23 @@ static void step_from(const double from[3], double heading, double slope, double
     to[2] = from[2] + level * sin(heading);
 }
 
+// To eye height over the ground near below, which boxes alone have none of but the lowest place.
+static int is_on_street(const walker *w, double at[3])
+{
+    const double from[3] = {at[0], at[1] + STREET_RISE_M, at[2]};
+    double drop = free_space_ground(w->a->space, from);
+    if (isinf(drop) && !w->a->has_meshes) drop = from[1] - w->a->low[1];
+    if (!(fabs(drop - STREET_RISE_M - AUTO_EYE_HEIGHT_M) <= STREET_RISE_M)) return 0;
+    at[1] = from[1] - drop + AUTO_EYE_HEIGHT_M;
+    return 1;
+}
+
 static int can_step(const walker *w, const double from[3], double heading, double slope, double to[3])
 {
     double middle[3];
     step_from(from, heading, slope, AUTO_STEP_M / 2, middle);
     step_from(from, heading, slope, AUTO_STEP_M, to);
+    if (w->style == WALK_STREET && !(is_on_street(w, middle) && is_on_street(w, to))) return 0;
     return is_free(w, middle) && is_free(w, to);
 }
 
@@ -241,18 +263,26 @@ static result walk_frame(walker *w, way *on)
     double to[3];
     w->heading = remainder(w->heading + on->along.turn, 2 * PI);
     step_from(w->at, w->heading, on->along.slope, AUTO_STEP_M, to);
+    if (w->style == WALK_STREET) is_on_street(w, to);
     on->left--;
     return arrive(w, to);
 }
 
+static uint32_t stride_of(walk_style style)
+{
+    return style == WALK_STREET ? STREET_STRIDE : 1;
+}
+
 static result walk(walker *w, uint32_t count, camera *cameras)
 {
+    const uint32_t stride = stride_of(w->style);
     gaze g = {.yaw = w->heading};
     way on = {0};
     result done = RESULT_OK;
-    for (uint32_t frame = 0; frame < count && done == RESULT_OK; ++frame) {
+    for (uint32_t frame = 0; frame < count * stride && done == RESULT_OK; ++frame) {
         turn_gaze(w, &g, frame);
-        cameras[frame] = auto_camera(w->a, w->at, g.yaw, g.pitch);
+        if (w->style == WALK_TURN) g.yaw = remainder(frame * SPIN_DEG * (PI / 180), 2 * PI);
+        if (frame % stride == 0) cameras[frame / stride] = auto_camera(w->a, w->at, g.yaw, g.pitch);
         done = walk_frame(w, &on);
     }
     return done;
@@ -295,31 +325,76 @@ static result begin(walker *w, const eye *e, double heading)
     return arrive(w, e->at);
 }
 
-// How many cells a walk from here would see.
-static result try_start(walker *w, const eye *e, double heading, uint32_t frames, uint32_t *out_cells)
+// Of the four ways along the axes, how many soon end at something; at the edge of all, where one leads out, none counts.
+static uint32_t sides_near(const walker *w)
+{
+    uint32_t sides = 0;
+    for (int axis = 0; axis < 3; axis += 2)
+        for (int sign = -1; sign <= 1; sign += 2) {
+            const double free_m = free_space_along(w->a->space, w->at, (axis_ray){axis, sign});
+            if (isinf(free_m)) return 0;
+            sides += free_m < STREET_WIDE_M;
+        }
+    return sides;
+}
+
+// How many cells a walk from here would see; in streets how much would stand beside it.
+static result try_start(walker *w, const eye *e, double heading, uint32_t frames, uint32_t *out_score)
 {
     way on = {0};
+    uint32_t sides = 0, cells = 0;
     result done = begin(w, e, heading);
-    for (uint32_t frame = 0; frame < frames && done == RESULT_OK; ++frame) done = walk_frame(w, &on);
-    *out_cells = 0;
-    for (uint32_t i = 0; i < w->visit_slots; ++i) *out_cells += w->visits[i].count != 0;
+    for (uint32_t frame = 0; frame < frames && done == RESULT_OK; ++frame) {
+        done = walk_frame(w, &on);
+        if (w->style == WALK_STREET) sides += sides_near(w);
+    }
+    for (uint32_t i = 0; i < w->visit_slots; ++i) cells += w->visits[i].count != 0;
+    *out_score = w->style == WALK_STREET ? (uint32_t)((uint64_t)sides * cells / (frames + 1)) + 1 : cells;
     return done;
 }
 
-// Of the first good places the one from where most is to be seen: many lie in niches. *out_cells 0: no place is free.
-static result find_start(walker *w, uint32_t frames, eye *out, double *out_heading, uint32_t *out_cells)
+static int is_start(const walker *w, const eye *e)
 {
+    if (!is_free(w, e->at) || (!w->a->scene->is_map && free_space_is_enclosed(w->a->space, e->at))) return 0;
+    return w->style != WALK_STREET || isinf(free_space_along(w->a->space, e->at, (axis_ray){1, 1}));
+}
+
+static int lower_first(const void *left, const void *right)
+{
+    const double a = *(const double *)left, b = *(const double *)right;
+    return (a > b) - (a < b);
+}
+
+// Roofs are ground, too, with sky over it: a street is low. INFINITY where it does not matter.
+static double highest_start(walker *w)
+{
+    double heights[STREET_TRIES];
+    uint32_t count = 0;
+    for (uint32_t i = 0; w->style == WALK_STREET && i < STREET_TRIES; ++i) {
+        const eye e = start_of(w, i);
+        if (is_start(w, &e)) heights[count++] = e.at[1];
+    }
+    if (!count) return INFINITY;
+    qsort(heights, count, sizeof *heights, lower_first);
+    return heights[count / 2] + STREET_SPREAD_M;
+}
+
+// Of the first good places the one from where most is to be seen: many lie in niches. *out_score 0: no place is free.
+static result find_start(walker *w, uint32_t frames, eye *out, double *out_heading, uint32_t *out_score)
+{
+    const double highest = highest_start(w);
+    const uint32_t tries = w->style == WALK_STREET ? STREET_TRIES : START_TRIES, wanted = w->style == WALK_STREET ? STREETS_WALKED : STARTS_WALKED;
     uint32_t good = 0;
-    for (uint32_t i = 0; i < START_TRIES && good < STARTS_WALKED; ++i) {
+    for (uint32_t i = 0; i < tries && good < wanted; ++i) {
         const eye e = start_of(w, i);
         const double heading = random_between(&w->a->random, -PI, PI);
-        if (!is_free(w, e.at) || (!w->a->scene->is_map && free_space_is_enclosed(w->a->space, e.at))) continue;
-        uint32_t cells;
-        const result done = try_start(w, &e, heading, frames, &cells);
+        if (e.at[1] > highest || !is_start(w, &e)) continue;
+        uint32_t score;
+        const result done = try_start(w, &e, heading, frames, &score);
         if (done != RESULT_OK) return done;
         ++good;
-        if (cells <= *out_cells) continue;
-        *out_cells = cells;
+        if (score <= *out_score) continue;
+        *out_score = score;
         *out = e;
         *out_heading = heading;
     }
@@ -341,20 +416,37 @@ static result walk_from_best(walker *w, uint32_t count, camera *cameras)
     bound_region(w);
     eye start;
     double heading = 0;
-    uint32_t cells = 0;
-    result done = find_start(w, count < TRIAL_FRAMES ? count : TRIAL_FRAMES, &start, &heading, &cells);
-    if (done == RESULT_OK && cells == 0) start = start_beside(w);
+    uint32_t score = 0;
+    const uint64_t frames = (uint64_t)count * stride_of(w->style);
+    result done = find_start(w, frames < TRIAL_FRAMES ? (uint32_t)frames : TRIAL_FRAMES, &start, &heading, &score);
+    if (done == RESULT_OK && score == 0) start = start_beside(w);
     if (done == RESULT_OK) done = begin(w, &start, heading);
     return done == RESULT_OK ? walk(w, count, cameras) : done;
 }
 
-result auto_walk_make(auto_views *a, uint32_t count, camera *cameras)
+static result make(auto_views *a, walk_style style, uint32_t count, camera *cameras)
 {
-    walker w = {.a = a, .clearance = AUTO_CLEARANCE_M + ROUNDING_M, .trail = buffer_make(a->memory, sizeof(eye)), .visit_slots = 1024};
-    while (w.visit_slots < 2 * ((uint64_t)count + 2)) w.visit_slots *= 2;
+    walker w = {.a = a, .style = style, .clearance = (style == WALK_STREET ? STREET_CLEARANCE_M : AUTO_CLEARANCE_M) + ROUNDING_M,
+                .trail = buffer_make(a->memory, sizeof(eye)), .visit_slots = 1024};
+    while (w.visit_slots < 2 * ((uint64_t)count * stride_of(style) + 2)) w.visit_slots *= 2;
     w.visits = memory_alloc_zeroed(a->memory, w.visit_slots, sizeof *w.visits);
     const result done = w.visits ? walk_from_best(&w, count, cameras) : RESULT_NO_MEMORY;
     memory_free(a->memory, w.visits, w.visit_slots, sizeof *w.visits);
     buffer_free(&w.trail);
     return done == RESULT_NO_MEMORY ? report_no_memory(a->report, a->scene->path) : done;
+}
+
+result auto_walk_make(auto_views *a, uint32_t count, camera *cameras)
+{
+    return make(a, WALK_AIR, count, cameras);
+}
+
+result auto_street_make(auto_views *a, uint32_t count, camera *cameras)
+{
+    return make(a, WALK_STREET, count, cameras);
+}
+
+result auto_turn_make(auto_views *a, uint32_t count, camera *cameras)
+{
+    return make(a, WALK_TURN, count, cameras);
 }

@@ -8,7 +8,7 @@
 
 static cull_box item_box(const frustum_index *index, uint32_t place)
 {
-    const float *b = index->levels[0] + (size_t)(place / INDEX_WIDTH) * INDEX_BOX_FLOATS + place % INDEX_WIDTH;
+    const float *b = index->levels[0] + (size_t)(place / CULL_BLOCK_WIDTH) * CULL_BLOCK_FLOATS + place % CULL_BLOCK_WIDTH;
     const cull_box box = {{b[0], b[16], b[32]}, {b[48], b[64], b[80]}};
     return box;
 }
@@ -16,7 +16,7 @@ static cull_box item_box(const frustum_index *index, uint32_t place)
 static int shows_only_its_back(const frustum_index *index, const cull_view *view, uint32_t place)
 {
     if (!index->faces) return 0;
-    const float *f = index->faces + (size_t)(place / INDEX_WIDTH) * INDEX_FACE_FLOATS + place % INDEX_WIDTH;
+    const float *f = index->faces + (size_t)(place / CULL_BLOCK_WIDTH) * CULL_BLOCK_FACE_FLOATS + place % CULL_BLOCK_WIDTH;
     float reach = 0;
     for (int i = 0; i < 3; i++) reach = fmaxf(reach, fabsf(view->eye[i]));
     const float height = (f[0] * view->eye[0] + f[16] * view->eye[1]) + f[32] * view->eye[2];

@@ -7,8 +7,9 @@
 // none), a step (no allocation, no failure), and the constant tables at the end, which a host reads before it runs any of this.
 #include "explain.h"
 #include "index.h"
-#include "unite.h"
 #include "walk.h"
+
+#include <portcullis/runs.h>
 
 #include <stdio.h>
 #include <string.h>
@@ -91,15 +92,15 @@ static void frustum_close(cull_query *q)
 // ---- A step ----
 
 // Three lists take turns: what is found so far, the next volume's, and their union. Returns what all volumes found.
-static run_list select_volumes(const cull_culler *c, const cull_visit *visit, run_list found, run_list next, run_list both,
-                               uint32_t *nodes_visited)
+static cull_run_list select_volumes(const cull_culler *c, const cull_visit *visit, cull_run_list found, cull_run_list next, cull_run_list both,
+                                    uint32_t *nodes_visited)
 {
     for (uint32_t v = 0; v < visit->volume_count; v++) {
-        run_list *into = v == 0 ? &found : &next;
+        cull_run_list *into = v == 0 ? &found : &next;
         into->count = c->kernel->volume(&c->index, &visit->volumes[v], into->runs, nodes_visited);
         if (v == 0) continue;
-        runs_unite(&found, &next, &both);
-        const run_list spare = found;
+        cull_runs_unite(&found, &next, &both);
+        const cull_run_list spare = found;
         found = both;
         both = spare;
     }
@@ -120,15 +121,15 @@ static cull_progress frustum_select(cull_query *q, const cull_visit *visit, cull
         batch->run_count += c->kernel->small(&c->index, &all, out, &batch->nodes_visited);
         return CULL_DONE;
     }
-    const run_list a = {visit->scratch, 0}, b = {(cull_run *)visit->scratch + c->max_runs, 0}, last = {out, 0};
+    const cull_run_list a = {visit->scratch, 0}, b = {(cull_run *)visit->scratch + c->max_runs, 0}, last = {out, 0};
     if (c->index.faces) {
-        const run_list touching = select_volumes(c, visit, a, b, last, &batch->nodes_visited);
+        const cull_run_list touching = select_volumes(c, visit, a, b, last, &batch->nodes_visited);
         cull_run *const facing = touching.runs == out ? a.runs : out;
         const uint32_t count = c->kernel->facing(&c->index, visit->view->eye, touching.runs, touching.count, facing);
         if (facing != out) memcpy(out, facing, count * sizeof *out);
         batch->run_count += count;
     } else {
-        const run_list touching = select_volumes(c, visit, last, a, b, &batch->nodes_visited);
+        const cull_run_list touching = select_volumes(c, visit, last, a, b, &batch->nodes_visited);
         if (touching.runs != out) memcpy(out, touching.runs, touching.count * sizeof *out);
         batch->run_count += touching.count;
     }

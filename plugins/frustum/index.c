@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "index.h"
 
-#include <math.h>
 #include <string.h>
 
 enum { ALIGN = 64, AXIS_ROWS = 6 };
 
 static uint32_t blocks_for(uint32_t entries)
 {
-    return entries / INDEX_WIDTH + (entries % INDEX_WIDTH != 0);
+    return entries / CULL_BLOCK_WIDTH + (entries % CULL_BLOCK_WIDTH != 0);
 }
 
 static void levels_measure(frustum_index *index)
@@ -24,40 +23,35 @@ static void levels_measure(frustum_index *index)
         entries = here;
     }
     index->level_count = level + 1;
-    index->box_bytes = blocks * INDEX_BOX_FLOATS * sizeof(float);
-}
-
-static void block_clear(float *block) // boxes that touch nothing
-{
-    for (int i = 0; i < INDEX_BOX_FLOATS; i++) block[i] = i < INDEX_BOX_FLOATS / 2 ? INFINITY : -INFINITY;
+    index->box_bytes = blocks * CULL_BLOCK_FLOATS * sizeof(float);
 }
 
 static void items_fill(const cull_zone *zone, const frustum_index *index, float *level)
 {
     const float *rows[AXIS_ROWS] = {zone->boxes.min_x, zone->boxes.min_y, zone->boxes.min_z,
                                     zone->boxes.max_x, zone->boxes.max_y, zone->boxes.max_z};
-    for (uint32_t first = 0; first < index->item_count; first += INDEX_WIDTH) {
-        float *block = level + (size_t)first / INDEX_WIDTH * INDEX_BOX_FLOATS;
-        const uint32_t left = index->item_count - first, count = left < INDEX_WIDTH ? left : INDEX_WIDTH;
-        if (count < INDEX_WIDTH) block_clear(block);
+    for (uint32_t first = 0; first < index->item_count; first += CULL_BLOCK_WIDTH) {
+        float *block = level + (size_t)first / CULL_BLOCK_WIDTH * CULL_BLOCK_FLOATS;
+        const uint32_t left = index->item_count - first, count = left < CULL_BLOCK_WIDTH ? left : CULL_BLOCK_WIDTH;
+        if (count < CULL_BLOCK_WIDTH) cull_block_fill(NULL, 0, block);
         for (int row = 0; row < AXIS_ROWS; row++)
-            for (uint32_t i = 0; i < count; i++) block[row * INDEX_WIDTH + (int)i] = rows[row][index->order[first + i]];
-        if (left <= INDEX_WIDTH) break; // first would pass 2^32
+            for (uint32_t i = 0; i < count; i++) block[row * CULL_BLOCK_WIDTH + (int)i] = rows[row][index->order[first + i]];
+        if (left <= CULL_BLOCK_WIDTH) break; // first would pass 2^32
     }
 }
 
 // The box of a whole block, as entry `place` of the level above.
 static void block_union(const float *block, float *above, uint32_t place)
 {
-    float *out = above + (size_t)(place / INDEX_WIDTH) * INDEX_BOX_FLOATS + place % INDEX_WIDTH;
+    float *out = above + (size_t)(place / CULL_BLOCK_WIDTH) * CULL_BLOCK_FLOATS + place % CULL_BLOCK_WIDTH;
     for (int row = 0; row < AXIS_ROWS; row++) {
-        const float *values = block + row * INDEX_WIDTH;
+        const float *values = block + row * CULL_BLOCK_WIDTH;
         float best = values[0];
-        for (int i = 1; i < INDEX_WIDTH; i++) {
+        for (int i = 1; i < CULL_BLOCK_WIDTH; i++) {
             const int is_better = row < 3 ? values[i] < best : values[i] > best;
             best = is_better ? values[i] : best;
         }
-        out[row * INDEX_WIDTH] = best;
+        out[row * CULL_BLOCK_WIDTH] = best;
     }
 }
 
@@ -65,13 +59,13 @@ static void levels_fill(const cull_zone *zone, frustum_index *index)
 {
     float *level = index->boxes;
     index->levels[0] = level;
-    if (index->item_count == 0) block_clear(level);
+    if (index->item_count == 0) cull_block_fill(NULL, 0, level);
     items_fill(zone, index, level);
     for (uint32_t l = 1; l < index->level_count; l++) {
         const uint32_t entries = index->entry_counts[l];
-        float *above = level + (size_t)entries * INDEX_BOX_FLOATS; // the level below has as many blocks
-        block_clear(above + (size_t)(blocks_for(entries) - 1) * INDEX_BOX_FLOATS);
-        for (uint32_t b = 0; b < entries; b++) block_union(level + (size_t)b * INDEX_BOX_FLOATS, above, b);
+        float *above = level + (size_t)entries * CULL_BLOCK_FLOATS; // the level below has as many blocks
+        cull_block_fill(NULL, 0, above + (size_t)(blocks_for(entries) - 1) * CULL_BLOCK_FLOATS);
+        for (uint32_t b = 0; b < entries; b++) block_union(level + (size_t)b * CULL_BLOCK_FLOATS, above, b);
         index->levels[l] = above;
         level = above;
     }
@@ -80,9 +74,9 @@ static void levels_fill(const cull_zone *zone, frustum_index *index)
 static void faces_fill(const cull_zone *zone, frustum_index *index)
 {
     for (uint32_t b = 0; b < blocks_for(index->item_count); b++) {
-        const uint32_t first = b * INDEX_WIDTH, left = index->item_count - first;
-        index_faces_fill(zone, index->order + first, left < INDEX_WIDTH ? left : INDEX_WIDTH,
-                         index->faces + (size_t)b * INDEX_FACE_FLOATS);
+        const uint32_t first = b * CULL_BLOCK_WIDTH, left = index->item_count - first;
+        cull_block_fill_faces(zone, index->order + first, left < CULL_BLOCK_WIDTH ? left : CULL_BLOCK_WIDTH,
+                              index->faces + (size_t)b * CULL_BLOCK_FACE_FLOATS);
     }
 }
 
@@ -96,7 +90,7 @@ cull_result index_build(const cull_host *host, const index_source *from, frustum
     index.boxes = host->alloc(host, index.box_bytes, ALIGN);
     cull_result result = index.order && index.boxes ? CULL_OK : CULL_ERR_MEMORY;
     if (result == CULL_OK && from->faces == INDEX_FACES && zone->walls && zone->item_count) {
-        index.face_bytes = (size_t)blocks_for(zone->item_count) * INDEX_FACE_FLOATS * sizeof(float);
+        index.face_bytes = (size_t)blocks_for(zone->item_count) * CULL_BLOCK_FACE_FLOATS * sizeof(float);
         index.faces = host->alloc(host, index.face_bytes, ALIGN);
         if (!index.faces) result = CULL_ERR_MEMORY;
     }

@@ -5,14 +5,11 @@
 #ifndef FRUSTUM_INDEX_H
 #define FRUSTUM_INDEX_H
 
-#include <portcullis/culler.h>
+#include <portcullis/block.h>
 
 enum {
-    INDEX_WIDTH = 16,       // boxes in a block: a vector of AVX-512
-    INDEX_SHIFT = 4,        // log2 of it
+    INDEX_SHIFT = 4,        // log2 of CULL_BLOCK_WIDTH
     INDEX_MAX_LEVELS = 8,   // 16^8 = 2^32 items
-    INDEX_BOX_FLOATS = 96,  // a block: 16 each of min x, min y, min z, max x, max y, max z; six cache lines
-    INDEX_FACE_FLOATS = 80, // a block: 16 each of normal x, y, z, offset, doubt
 };
 
 typedef struct frustum_index {
@@ -20,7 +17,7 @@ typedef struct frustum_index {
     const float *levels[INDEX_MAX_LEVELS];        // [0]: item boxes
     uint32_t entry_counts[INDEX_MAX_LEVELS];      // boxes in a level; the rest of its last block is never visible
     uint32_t *order;                              // order[place] = item
-    float *faces;                                 // blocks of INDEX_FACE_FLOATS, one a place; NULL: back faces are kept
+    float *faces;                                 // blocks of CULL_BLOCK_FACE_FLOATS, one a place; NULL: back faces are kept
     float *boxes;                                 // all levels
     size_t order_bytes, face_bytes, box_bytes;
 } frustum_index;
@@ -45,8 +42,5 @@ cull_result index_order(const cull_host *host, const cull_zone *zone, uint32_t *
 uint64_t index_save(const frustum_index *index, void *blob, uint64_t size); // as cull_bake.save
 // CULL_ERR_BLOB where it isn't, to the last bit, what index_save wrote for as many items.
 cull_result index_load_order(const cull_host *host, const cull_blob *baked, uint32_t item_count, uint32_t *order);
-
-// One block of faces for the items order[0 .. count-1], count <= 16.
-void index_faces_fill(const cull_zone *zone, const uint32_t *order, uint32_t count, float *faces);
 
 #endif

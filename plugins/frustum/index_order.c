@@ -88,8 +88,8 @@ static void divide(const splitter *s, uint32_t *list, uint32_t count)
 // Items on the left of the cut: whole children of the node, as near to half as they come.
 static uint32_t left_share(uint32_t count)
 {
-    uint64_t child = INDEX_WIDTH;
-    while (child * INDEX_WIDTH < count) child *= INDEX_WIDTH;
+    uint64_t child = CULL_BLOCK_WIDTH;
+    while (child * CULL_BLOCK_WIDTH < count) child *= CULL_BLOCK_WIDTH;
     const uint64_t children = (count + child - 1) / child;
     uint64_t left = (count / 2 + child / 2) / child;
     if (left < 1) left = 1;
@@ -101,7 +101,7 @@ static void split(const splitter *s, uint32_t first, uint32_t count) // at most 
 {
     const int axis = widest_axis(s, first, count);
     uint32_t *list = s->lists[axis] + first;
-    if (count <= INDEX_WIDTH) {
+    if (count <= CULL_BLOCK_WIDTH) {
         memcpy(s->order + first, list, count * sizeof *list); // sorted: fewer runs in a leaf that a plane cuts
         return;
     }

@@ -1,9 +1,6 @@
 // The walk down the tree, included by one source file per instruction set.
 // SPDX-License-Identifier: MIT
-// That file defines before:
-//   uint32_t block_touch(const float *block, const walk_plane *planes, uint32_t which)
-//   void block_split(const float *block, const walk_plane *planes, uint32_t which, walk_split *out)
-//   uint32_t block_facing(const float *faces, const float eye[4], float reach)
+// That file includes <portcullis/block.h> in its own lanes, and defines before:
 //   uint32_t *put16(uint32_t bits, uint32_t base, uint32_t shift, uint32_t *out): base + (b << shift) of each set bit b
 // All sums are taken in one order, unfused: the sets are equal bit for bit.
 //
@@ -12,27 +9,22 @@
 
 typedef struct walk {
     const frustum_index *index;
-    const walk_plane *planes;
+    const cull_block_plane *planes;
     uint32_t *out;
     uint32_t open; // 1: the last item met is visible
     uint32_t nodes;
 } walk;
 
-static inline uint32_t lowest_bit(uint32_t bits)
-{
-    return (uint32_t)__builtin_ctz(bits);
-}
-
 static inline const float *block_at(const frustum_index *index, uint32_t level, uint32_t block)
 {
-    return index->levels[level] + (size_t)block * INDEX_BOX_FLOATS;
+    return index->levels[level] + (size_t)block * CULL_BLOCK_FLOATS;
 }
 
 // Bits of entries that are there: all but in the last block of a level.
 static inline uint32_t block_entries(const frustum_index *index, uint32_t level, uint32_t block)
 {
-    const uint32_t left = index->entry_counts[level] - block * INDEX_WIDTH;
-    return left < INDEX_WIDTH ? (1u << left) - 1 : 0xffffu;
+    const uint32_t left = index->entry_counts[level] - block * CULL_BLOCK_WIDTH;
+    return left < CULL_BLOCK_WIDTH ? (1u << left) - 1 : 0xffffu;
 }
 
 // Children from .. to-1 of a node, none of them cut; child c starts at base + (c << shift).
@@ -46,54 +38,45 @@ static inline void walk_put(walk *w, uint32_t visible, uint32_t from, uint32_t t
 
 static inline void walk_leaf(walk *w, uint32_t block, uint32_t planes)
 {
-    const uint32_t visible = block_touch(block_at(w->index, 0, block), w->planes, planes) & block_entries(w->index, 0, block);
-    walk_put(w, visible, 0, INDEX_WIDTH, block * INDEX_WIDTH, 0);
+    const uint32_t visible = cull_block_touch(block_at(w->index, 0, block), w->planes, planes) & block_entries(w->index, 0, block);
+    walk_put(w, visible, 0, CULL_BLOCK_WIDTH, block * CULL_BLOCK_WIDTH, 0);
     w->nodes++;
 }
 
 // Judges the children of a node, and asks for the memory of those that are cut.
-static inline void walk_split_node(walk *w, uint32_t level, uint32_t block, const walk_plane *planes, uint32_t which, walk_split *out)
+static inline void walk_split_node(walk *w, uint32_t level, uint32_t block, const cull_block_plane *planes, uint32_t which, cull_block_split *out)
 {
-    block_split(block_at(w->index, level, block), planes, which, out);
+    cull_block_split_by(block_at(w->index, level, block), planes, which, out);
     out->touching &= block_entries(w->index, level, block);
     out->cut &= out->touching;
     w->nodes++;
     for (uint32_t rest = out->cut; rest; rest &= rest - 1) {
-        const uint32_t c = lowest_bit(rest), child = block * INDEX_WIDTH + c;
-        for (int line = 0; line < INDEX_BOX_FLOATS; line += 16) __builtin_prefetch(block_at(w->index, level - 1, child) + line);
+        const uint32_t c = cull_lowest_bit(rest), child = block * CULL_BLOCK_WIDTH + c;
+        for (int line = 0; line < CULL_BLOCK_FLOATS; line += 16) __builtin_prefetch(block_at(w->index, level - 1, child) + line);
     }
 }
 
 // All cut children are judged before the first is entered, so that their memory is on its way while others are worked
 // on. At most INDEX_MAX_LEVELS deep.
-static void walk_node(walk *w, uint32_t level, uint32_t block, const walk_split *split)
+static void walk_node(walk *w, uint32_t level, uint32_t block, const cull_block_split *split)
 {
-    walk_split below[INDEX_WIDTH];
+    cull_block_split below[CULL_BLOCK_WIDTH];
     const uint32_t shift = INDEX_SHIFT * level, base = (uint32_t)((uint64_t)block << (shift + INDEX_SHIFT));
     const uint32_t visible = split->touching & ~split->cut;
     if (level > 1)
         for (uint32_t rest = split->cut; rest; rest &= rest - 1) {
-            const uint32_t c = lowest_bit(rest);
-            walk_split_node(w, level - 1, block * INDEX_WIDTH + c, w->planes, split->planes[c], &below[c]);
+            const uint32_t c = cull_lowest_bit(rest);
+            walk_split_node(w, level - 1, block * CULL_BLOCK_WIDTH + c, w->planes, split->planes[c], &below[c]);
         }
     uint32_t from = 0;
     for (uint32_t rest = split->cut; rest; rest &= rest - 1) {
-        const uint32_t c = lowest_bit(rest), child = block * INDEX_WIDTH + c;
+        const uint32_t c = cull_lowest_bit(rest), child = block * CULL_BLOCK_WIDTH + c;
         walk_put(w, visible, from, c, base, shift);
         if (level == 1) walk_leaf(w, child, split->planes[c]);
         else walk_node(w, level - 1, child, &below[c]);
         from = c + 1;
     }
-    walk_put(w, visible, from, INDEX_WIDTH, base, shift);
-}
-
-static void planes_ready(const cull_volume *volume, walk_plane *out)
-{
-    for (uint32_t k = 0; k < volume->plane_count; k++) {
-        const cull_plane p = volume->planes[k];
-        const uint32_t x = p.normal.x >= 0 ? 48 : 0, y = p.normal.y >= 0 ? 64 : 16, z = p.normal.z >= 0 ? 80 : 32;
-        out[k] = (walk_plane){p.normal.x, p.normal.y, p.normal.z, -p.offset, x, y, z, 48 - x, 80 - y, 112 - z};
-    }
+    walk_put(w, visible, from, CULL_BLOCK_WIDTH, base, shift);
 }
 
 // Closes the last run at `end` and makes counts of ends. Places may lie beyond `end` where the last subtree is not full.
@@ -115,14 +98,14 @@ static uint32_t walk_volume(const frustum_index *index, const cull_volume *volum
         runs[0] = (cull_run){0, index->item_count};
         return 1;
     }
-    walk_plane planes[CULL_MAX_PLANES];
-    planes_ready(volume, planes);
+    cull_block_plane planes[CULL_MAX_PLANES];
+    cull_block_planes(volume, planes);
     const uint32_t all = UINT32_MAX >> (CULL_MAX_PLANES - volume->plane_count);
     walk w = {.index = index, .planes = planes, .out = changes};
     if (index->level_count == 1) {
         walk_leaf(&w, 0, all);
     } else {
-        walk_split root;
+        cull_block_split root;
         walk_split_node(&w, index->level_count - 1, 0, planes, all, &root);
         walk_node(&w, index->level_count - 1, 0, &root);
     }
@@ -130,28 +113,18 @@ static uint32_t walk_volume(const frustum_index *index, const cull_volume *volum
     return changes_to_runs(changes, w.out, index->item_count);
 }
 
-static float largest(const float v[4])
-{
-    float most = 0;
-    for (int i = 0; i < 3; i++) {
-        const float size = v[i] < 0 ? -v[i] : v[i];
-        if (size > most) most = size;
-    }
-    return most;
-}
-
 static uint32_t walk_facing(const frustum_index *index, const float eye[4], const cull_run *in, uint32_t in_count, cull_run *out)
 {
     uint32_t *const changes = &out[0].first;
-    const float reach = largest(eye);
+    const float reach = cull_block_reach(eye);
     walk w = {.index = index, .out = changes};
     for (uint32_t r = 0; r < in_count; r++) {
         const uint32_t end = in[r].first + in[r].count - 1; // the last one: first + count may be 2^32
-        for (uint32_t block = in[r].first / INDEX_WIDTH; block <= end / INDEX_WIDTH; block++) {
-            const uint32_t base = block * INDEX_WIDTH;
+        for (uint32_t block = in[r].first / CULL_BLOCK_WIDTH; block <= end / CULL_BLOCK_WIDTH; block++) {
+            const uint32_t base = block * CULL_BLOCK_WIDTH;
             const uint32_t from = in[r].first > base ? in[r].first - base : 0;
-            const uint32_t to = end - base < INDEX_WIDTH ? end - base + 1 : INDEX_WIDTH;
-            const uint32_t facing = block_facing(index->faces + (size_t)block * INDEX_FACE_FLOATS, eye, reach);
+            const uint32_t to = end - base < CULL_BLOCK_WIDTH ? end - base + 1 : CULL_BLOCK_WIDTH;
+            const uint32_t facing = cull_block_facing(index->faces + (size_t)block * CULL_BLOCK_FACE_FLOATS, eye, reach);
             walk_put(&w, facing, from, to, base, 0);
         }
         if (w.open) *w.out++ = end + 1; // runs never touch, so nothing joins

@@ -4,8 +4,8 @@
 // that of walk_volume for each volume, united, and of walk_facing on that.
 
 typedef struct small_volume {
-    walk_plane planes[CULL_MAX_PLANES];
-    walk_split root, node; // of the block on top, and of the one below it that is being walked
+    cull_block_plane planes[CULL_MAX_PLANES];
+    cull_block_split root, node; // of the block on top, and of the one below it that is being walked
 } small_volume;
 
 typedef struct small_walk {
@@ -21,19 +21,19 @@ static inline uint32_t small_facing(const small_walk *s, uint32_t block)
     const frustum_index *index = s->w.index;
     const uint32_t there = block_entries(index, 0, block);
     if (!index->faces) return there;
-    return there & block_facing(index->faces + (size_t)block * INDEX_FACE_FLOATS, s->query->eye, s->reach);
+    return there & cull_block_facing(index->faces + (size_t)block * CULL_BLOCK_FACE_FLOATS, s->query->eye, s->reach);
 }
 
 // Places from the block's first on, all that come before having been met.
 static inline void small_put(small_walk *s, uint32_t visible, uint32_t block)
 {
-    walk_put(&s->w, visible, 0, INDEX_WIDTH, block * INDEX_WIDTH, 0);
+    walk_put(&s->w, visible, 0, CULL_BLOCK_WIDTH, block * CULL_BLOCK_WIDTH, 0);
 }
 
 // Blocks that no volume touches: what was open ends.
 static inline void small_skip(small_walk *s, uint32_t block)
 {
-    if (s->w.open) *s->w.out++ = block * INDEX_WIDTH;
+    if (s->w.open) *s->w.out++ = block * CULL_BLOCK_WIDTH;
     s->w.open = 0;
 }
 
@@ -43,18 +43,18 @@ static inline void small_blocks(small_walk *s, uint32_t node)
     const uint32_t volume_count = s->query->volume_count;
     uint32_t touching = 0, whole = 0;
     for (uint32_t v = 0; v < volume_count; v++) {
-        const walk_split *split = &s->volumes[v].node;
+        const cull_block_split *split = &s->volumes[v].node;
         touching |= split->touching;
         whole |= split->touching & ~split->cut;
     }
-    uint32_t next = node * INDEX_WIDTH;
+    uint32_t next = node * CULL_BLOCK_WIDTH;
     for (uint32_t rest = touching; rest; rest &= rest - 1) {
-        const uint32_t c = lowest_bit(rest), block = node * INDEX_WIDTH + c;
+        const uint32_t c = cull_lowest_bit(rest), block = node * CULL_BLOCK_WIDTH + c;
         uint32_t visible = whole >> c & 1 ? 0xffffu : 0;
         for (uint32_t v = 0; v < volume_count && visible != 0xffffu; v++) {
             const small_volume *volume = &s->volumes[v];
             if (!(volume->node.cut >> c & 1)) continue;
-            visible |= block_touch(block_at(s->w.index, 0, block), volume->planes, volume->node.planes[c]);
+            visible |= cull_block_touch(block_at(s->w.index, 0, block), volume->planes, volume->node.planes[c]);
             s->w.nodes++;
         }
         if (block != next) small_skip(s, next);
@@ -62,7 +62,7 @@ static inline void small_blocks(small_walk *s, uint32_t node)
         small_put(s, visible, block);
         next = block + 1;
     }
-    if (next != (node + 1) * INDEX_WIDTH) small_skip(s, next);
+    if (next != (node + 1) * CULL_BLOCK_WIDTH) small_skip(s, next);
 }
 
 // A volume's split of child c of the top block, as if it were walked down to.
@@ -82,8 +82,8 @@ static inline void small_start(small_walk *s)
         const cull_volume *from = &s->query->volumes[v];
         small_volume *volume = &s->volumes[v];
         const uint32_t all = from->plane_count ? UINT32_MAX >> (CULL_MAX_PLANES - from->plane_count) : 0;
-        planes_ready(from, volume->planes);
-        walk_split *top = index->level_count == 3 ? &volume->root : &volume->node;
+        cull_block_planes(from, volume->planes);
+        cull_block_split *top = index->level_count == 3 ? &volume->root : &volume->node;
         if (index->level_count > 1) {
             walk_split_node(&s->w, index->level_count - 1, 0, volume->planes, all, top);
             continue;
@@ -101,7 +101,7 @@ static uint32_t walk_small(const frustum_index *index, const small_query *q, cul
     small_walk s;
     s.w = (walk){.index = index, .out = changes};
     s.query = q;
-    s.reach = largest(q->eye);
+    s.reach = cull_block_reach(q->eye);
     small_start(&s);
     if (index->level_count < 3) small_blocks(&s, 0);
     else

@@ -8,12 +8,6 @@
 
 enum { CELL_PX = 4, SMALL_CELLS = 6 };
 
-// The outline of a box, as a span of cells a row.
-typedef struct outline {
-    int first_row, end_row, is_point, cells;
-    int low[COVER_ROWS], end[COVER_ROWS]; // columns, of rows first_row .. end_row - 1
-} outline;
-
 static uint32_t cells_for(uint32_t size_px, uint32_t most)
 {
     const uint32_t cells = size_px / CELL_PX + (size_px % CELL_PX != 0);
@@ -73,7 +67,7 @@ static void edge_add(float spans[COVER_ROWS][2], const float a[2], const float b
 }
 
 // What holds no centre is taken as the one cell that it lies in.
-static void outline_of_point(const cover *c, float x, float y, outline *out)
+static void outline_of_point(const cover *c, float x, float y, cover_outline *out)
 {
     const int column = (int)fminf(fmaxf(x, 0), (float)c->columns - 1), row = (int)fminf(fmaxf(y, 0), (float)c->row_count - 1);
     out->is_point = 1;
@@ -83,7 +77,7 @@ static void outline_of_point(const cover *c, float x, float y, outline *out)
     out->end[row] = column + 1;
 }
 
-static int outline_of(const cover *c, const cull_box *box, outline *out)
+int cover_outline_of(const cover *c, const cull_box *box, cover_outline *out)
 {
     static const uint8_t edges[12][2] = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3}, {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
     float x[8], y[8], spans[COVER_ROWS][2];
@@ -125,8 +119,8 @@ static uint64_t word_mask(int word, int low, int end)
 
 cover_state cover_look(const cover *c, const cull_box *box)
 {
-    outline o;
-    if (!outline_of(c, box, &o)) return COVER_UNKNOWN;
+    cover_outline o;
+    if (!cover_outline_of(c, box, &o)) return COVER_UNKNOWN;
     for (int row = o.first_row; row < o.end_row; row++)
         for (int word = o.low[row] / 64; word < COVER_WORDS && word * 64 < o.end[row]; word++)
             if (word_mask(word, o.low[row], o.end[row]) & ~c->rows[row][word]) return o.cells < SMALL_CELLS ? COVER_SMALL : COVER_OPEN;
@@ -135,8 +129,8 @@ cover_state cover_look(const cover *c, const cull_box *box)
 
 void cover_mark(cover *c, const cull_box *box)
 {
-    outline o;
-    if (!outline_of(c, box, &o) || o.is_point) return; // a point covers no cell
+    cover_outline o;
+    if (!cover_outline_of(c, box, &o) || o.is_point) return; // a point covers no cell
     for (int row = o.first_row; row < o.end_row; row++)
         for (int word = o.low[row] / 64; word < COVER_WORDS && word * 64 < o.end[row]; word++)
             c->rows[row][word] |= word_mask(word, o.low[row], o.end[row]);

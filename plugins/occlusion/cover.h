@@ -14,10 +14,17 @@ typedef struct cover {
     uint32_t columns, row_count; // cells that the picture has
 } cover;
 
+// The outline of a box, as a span of cells a row: those whose centres it holds. What holds none is a point: the cell that it lies in.
+typedef struct cover_outline {
+    int first_row, end_row, is_point, cells;
+    int low[COVER_ROWS], end[COVER_ROWS]; // columns, of rows first_row .. end_row - 1
+} cover_outline;
+
 void cover_begin(cover *c, const cull_view *view);
 typedef enum cover_state { COVER_OPEN, COVER_SMALL, COVER_FULL, COVER_UNKNOWN } cover_state; // UNKNOWN: reaches behind the eye
 // FULL: every cell whose centre the box's outline holds is covered. SMALL: open, and of few cells.
 cover_state cover_look(const cover *c, const cull_box *box);
 void cover_mark(cover *c, const cull_box *box);
+int cover_outline_of(const cover *c, const cull_box *box, cover_outline *out); // 0: it reaches behind the eye
 
 #endif

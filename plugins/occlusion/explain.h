@@ -7,5 +7,7 @@
 
 // [step] As cull_explain.item, after the frame's last step.
 size_t explain_item(const occlusion_walk *w, uint32_t item, char *text, size_t size);
+// Of method=hiz.
+size_t explain_seen(int is_seen, char *text, size_t size);
 
 #endif

@@ -6,6 +6,9 @@ void figures_begin(const occlusion_tree *tree, occlusion_figures *out)
 {
     static const char *const names[FIGURE_COUNT] = {
         "nodes", "depth", "units", "frames", "tests", "tests_waited_for", "tests_wasted", "tests_unanswered", "answer_age_frames", "units_off_a_frame",
+        "frames_at_rest",
+        "tests_joint", "tests_joint_hidden", "tests_early", "turns_a_frame", "steps_idle",
+        "rectangles_tested", "items_rastered", "polygons_rastered",
     };
     *out = (occlusion_figures){.lent = {out->list, FIGURE_COUNT, 0}};
     for (int i = 0; i < FIGURE_COUNT; i++) out->list[i].name = names[i];
@@ -23,9 +26,19 @@ void figures_add(occlusion_figures *f, const occlusion_counters *c)
     list[FIGURE_WAITED].value += (double)c->waited;
     list[FIGURE_WASTED].value += (double)c->wasted;
     list[FIGURE_UNANSWERED].value += (double)c->unanswered;
+    list[FIGURE_RESTS].value += (double)c->rests;
+    list[FIGURE_JOINT].value += (double)c->joint;
+    list[FIGURE_JOINT_HITS].value += (double)c->joint_hits;
+    list[FIGURE_EARLY].value += (double)c->early;
+    list[FIGURE_RECTANGLES].value += (double)c->hiz.rectangles;
+    list[FIGURE_HIZ_ITEMS].value += (double)c->hiz.items;
+    list[FIGURE_HIZ_POLYGONS].value += (double)c->hiz.polygons;
+    list[FIGURE_IDLES].value += (double)c->idles;
+    f->turns += (double)c->turns;
     f->late_answers += (double)c->late_answers;
     f->age_sum += (double)c->age_sum;
     f->off_sum += (double)c->off_units;
     if (f->late_answers > 0) list[FIGURE_AGE].value = f->age_sum / f->late_answers;
     if (list[FIGURE_FRAMES].value > 0) list[FIGURE_OFF].value = f->off_sum / list[FIGURE_FRAMES].value;
+    if (list[FIGURE_FRAMES].value > 0) list[FIGURE_TURNS].value = f->turns / list[FIGURE_FRAMES].value;
 }

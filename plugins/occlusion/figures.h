@@ -17,12 +17,21 @@ enum {
     FIGURE_UNANSWERED,
     FIGURE_AGE,
     FIGURE_OFF,
+    FIGURE_RESTS,
+    FIGURE_JOINT,
+    FIGURE_JOINT_HITS,
+    FIGURE_EARLY,
+    FIGURE_TURNS,
+    FIGURE_IDLES,
+    FIGURE_RECTANGLES,
+    FIGURE_HIZ_ITEMS,
+    FIGURE_HIZ_POLYGONS,
     FIGURE_COUNT
 };
 typedef struct occlusion_figures {
     cull_figures lent;
     cull_figure list[FIGURE_COUNT];
-    double late_answers, age_sum, off_sum;
+    double late_answers, age_sum, off_sum, turns;
 } occlusion_figures;
 
 void figures_begin(const occlusion_tree *tree, occlusion_figures *out); // *out must not move

@@ -5,6 +5,7 @@
 #define OCCLUSION_HISTORY_H
 
 #include "heap.h"
+#include "hiz_counters.h"
 #include "tree.h"
 
 // What became of the tests, summed over the frames of a viewer.
@@ -15,11 +16,18 @@ typedef struct occlusion_counters {
     uint64_t unanswered; // in a frame that needed them
     uint64_t age_sum, late_answers; // of answers to tests of earlier frames
     uint64_t off_units;  // units drawn without tests, summed over frames
+    uint64_t rests;      // frames in which nothing was tested before it was drawn
+    uint64_t joint, joint_hits; // of the tests, several entries under one; answered "hidden"
+    uint64_t early;             // of the tests, only to have work while answers are out
+    uint64_t idles;             // steps without work, while answers were out
+    uint64_t turns;             // from drawing to testing, and back
+    hiz_counters hiz;
 } occlusion_counters;
 
 // What a unit's tests removed, against what they cost; see ledger.h.
 typedef struct ledger_page {
     uint32_t tests, spent, gained; // answered; what they cost and took away
+    uint32_t shown;                // of a zone: what was drawn all the same
     uint32_t off_until, on_since;  // serials of frames
     uint32_t level;                // the next pause: 2^level frames
     uint32_t drawn;                // items, when it was switched off
@@ -29,6 +37,7 @@ typedef struct ledger_page {
 // Flags of an item: seen, how often in a row, and found hidden in the frame that had drawn it already.
 enum { ITEM_SEEN = 1, ITEM_LOST = 2, ITEM_CALM_SHIFT = 2 };
 
+struct occlusion_chc;
 typedef struct occlusion_history {
     const occlusion_tree *tree;
     uint8_t *items;       // by place: flags of the method
@@ -45,8 +54,10 @@ typedef struct occlusion_history {
     uint32_t *pixels;     // the answers to them
     ledger_page movers, zone;
     occlusion_counters counters;
+    struct occlusion_chc *chc; // of method=chc, else NULL
     uint32_t seen_count, drawn_count, heap_count, pending_count, tested_count;
-    uint32_t serial, last_frame, first_run, mask_used, says_places, phase, mover_capacity, test_most;
+    uint32_t rested; // serial of the last frame that drew all without tests
+    uint32_t serial, last_frame, first_run, mask_used, says_places, phase, mover_capacity, test_most, is_testing;
 } occlusion_history;
 
 typedef struct history_request {

@@ -13,7 +13,7 @@ typedef struct occlusion_method {
     cull_progress (*step)(occlusion_walk *);
 } occlusion_method;
 
-extern const occlusion_method method_wait, method_last, method_twophase;
+extern const occlusion_method method_wait, method_last, method_twophase, method_chc, method_hiz;
 
 enum { METHOD_TESTS_MOST = 32768 }; // in a step: the host keeps room for them several times over
 static inline uint32_t method_tests(uint32_t entries)

@@ -5,6 +5,7 @@
 #include "cover.h"
 #include "ledger.h"
 #include "method.h"
+#include "rest.h"
 
 enum { STEPS = 8, DIRECT_ITEMS = 64 }; // DIRECT_ITEMS: a node seen with no more is tested item by item
 
@@ -142,6 +143,20 @@ static void draw_foremost(twophase *t)
     }
 }
 
+// From outside of a zone what hides it may stand in others, which nobody has drawn yet: it is tested whole before anything.
+static void begin_anew(twophase *t)
+{
+    if (!walk_has(t->w, 0)) return;
+    if (walk_is_near(t->w, walk_key(t->w, &t->w->tree->nodes[0].box))) draw_foremost(t);
+    else walk_pend(t->w, 0);
+}
+
+// The zone was seen whole. What stands in front of a small one, as rooms are, is in other zones: its items are tested one by one.
+static int is_begun_by_test(const occlusion_walk *w)
+{
+    return w->tree->item_count > TREE_UNIT_ITEMS && w->visit->step == 1 && w->h->tested_count == 1 && w->h->pending[0] == 0 && !w->h->drawn_count;
+}
+
 // ---- Later steps ----
 
 // What a test found seen comes nearest first; what could not be tested yet waits again.
@@ -174,6 +189,17 @@ static void draw_layer(twophase *t)
         else if (tree_is_node(w->tree, top.entry)) open_node(t, top.entry);
         else draw_item(t, top.entry - w->tree->node_count);
     }
+}
+
+static void go_on(twophase *t)
+{
+    occlusion_history *h = t->w->h;
+    if (!is_begun_by_test(t->w)) {
+        draw_layer(t);
+        return;
+    }
+    h->pending_count = 0;
+    if (h->pixels[0]) draw_foremost(t);
 }
 
 // ---- Movers ----
@@ -217,8 +243,9 @@ static cull_progress step(occlusion_walk *w)
     occlusion_history *h = w->h;
     twophase t = {w, w->visit->scratch, STEPS - 1 - w->visit->step};
     if (w->visit->step == 0) h->phase = MOVERS_OPEN;
-    if (w->visit->step) draw_layer(&t);
-    else if (w->tree->node_count && (h->seen_count == 0 || (w->visit->view->flags & CULL_VIEW_CUT))) draw_foremost(&t);
+    if (w->visit->step == 0 && rest_frame(w)) return CULL_DONE;
+    if (w->visit->step) go_on(&t);
+    else if (w->tree->node_count && (h->seen_count == 0 || (w->visit->view->flags & CULL_VIEW_CUT))) begin_anew(&t);
     else if (w->tree->node_count) draw_seen(w);
     look_at_movers(&t);
     if (h->pending_count && t.steps_left) {
@@ -226,6 +253,7 @@ static cull_progress step(occlusion_walk *w)
         return CULL_WAIT;
     }
     ask_for_next_frame(w);
+    rest_count_drawn(w);
     history_turn(h);
     return CULL_DONE;
 }

@@ -5,15 +5,17 @@
 // A lent tree that lists each item once is walked, and the select does not run: that tree says all that a select by boxes knows.
 // One that lists items several times is of a select that knows more than boxes (walls, cells): its candidates are taken then,
 // under a tree of occlusion's own, whose boxes fit better. So does one of its own where the lent one is flat.
+#include "chc.h"
 #include "cover.h"
 #include "explain.h"
 #include "figures.h"
+#include "hiz.h"
 #include "method.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { OPTION_METHOD, OPTION_WALK, OPTION_COUNT }; // places in occlusion_options
+enum { OPTION_METHOD, OPTION_WALK, OPTION_BATCH, OPTION_PRUNE, OPTION_THREADS, OPTION_ISA, OPTION_COUNT }; // places in occlusion_options
 
 typedef enum walk_choice { WALK_AUTO, WALK_LENT, WALK_CANDIDATES } walk_choice;
 
@@ -21,7 +23,10 @@ struct cull_culler {
     const cull_host *host;
     const occlusion_method *method;
     walk_choice walk;
-    uint32_t mover_capacity, has_tree, numbers_differ; // numbers_differ: places are not the zone's own numbers
+    uint32_t batches; // of chc: tests are saved up
+    hiz_options hiz_options; // of hiz
+    hiz hiz;
+    uint32_t mover_capacity, has_tree, has_hiz, numbers_differ; // numbers_differ: places are not the zone's own numbers
     occlusion_tree tree;
     occlusion_figures *figures; // its own: added to while the culler is constant
 };
@@ -42,7 +47,7 @@ static cull_result option_refused(const cull_host *host, const char *key, const 
 
 static const occlusion_method *method_named(const char *name)
 {
-    static const occlusion_method *const methods[] = {&method_wait, &method_last, &method_twophase};
+    static const occlusion_method *const methods[] = {&method_wait, &method_last, &method_twophase, &method_chc, &method_hiz};
     for (size_t i = 0; i < sizeof methods / sizeof *methods; i++)
         if (strcmp(methods[i]->name, name) == 0) return methods[i];
     return NULL;
@@ -63,20 +68,28 @@ static cull_result occlusion_create(const cull_host *host, const char *const *va
 {
     walk_choice walk;
     const occlusion_method *method = method_named(values[OPTION_METHOD]);
-    if (!method) return option_refused(host, "method", values[OPTION_METHOD], "wait, last or twophase");
+    if (!method) return option_refused(host, "method", values[OPTION_METHOD], "wait, last, twophase, chc or hiz");
     if (!walk_named(values[OPTION_WALK], &walk)) return option_refused(host, "walk", values[OPTION_WALK], "auto, lent or candidates");
+    const int batches = strcmp(values[OPTION_BATCH], "on") == 0;
+    if (!batches && strcmp(values[OPTION_BATCH], "off") != 0) return option_refused(host, "batch", values[OPTION_BATCH], "on or off");
+    hiz_options hiz_options;
+    const cull_result hiz_result = hiz_options_read(host, values + OPTION_PRUNE, &hiz_options);
+    if (hiz_result != CULL_OK) return hiz_result;
     cull_culler *c = host->alloc(host, sizeof *c, _Alignof(cull_culler));
     if (!c) return CULL_ERR_MEMORY;
     memset(c, 0, sizeof *c);
+    c->hiz_options = hiz_options;
     c->host = host;
     c->method = method;
     c->walk = walk;
+    c->batches = batches != 0;
     *out = c;
     return CULL_OK;
 }
 
 static void occlusion_destroy(cull_culler *c)
 {
+    if (c->has_hiz) hiz_free(&c->hiz);
     if (c->has_tree) tree_free(c->host, &c->tree);
     if (c->figures) c->host->free(c->host, c->figures, sizeof *c->figures);
     c->host->free(c->host, c, sizeof *c);
@@ -90,8 +103,8 @@ static uint32_t entries_of(const cull_culler *c)
 static void tell(cull_culler *c, cull_built *out)
 {
     const uint32_t entries = entries_of(c);
-    out->scratch_size = sizeof(cover);
-    out->index_bytes = sizeof *c + tree_bytes(&c->tree);
+    out->scratch_size = c->has_hiz ? hiz_scratch_bytes(&c->hiz) : sizeof(cover);
+    out->index_bytes = sizeof *c + tree_bytes(&c->tree) + (c->has_hiz ? hiz_bytes(&c->hiz) : 0);
     out->promises = c->method->promises;
     out->max_runs = c->tree.item_count;
     out->max_steps = c->method->steps_most(entries);
@@ -120,6 +133,11 @@ static cull_result occlusion_build(cull_culler *c, const cull_zone *zone, const 
     if (result != CULL_OK) return result;
     c->has_tree = 1;
     for (uint32_t i = 0; i < zone->item_count; i++) c->numbers_differ |= c->tree.ids[i] != i;
+    if (c->method == &method_hiz) {
+        const cull_result made = hiz_make(c->host, zone, &c->hiz_options, &c->hiz);
+        if (made != CULL_OK) return made;
+        c->has_hiz = 1;
+    }
     figures_begin(&c->tree, c->figures);
     tell(c, out);
     out->order = c->tree.ids;
@@ -136,6 +154,12 @@ static cull_result occlusion_open(const cull_culler *c, cull_query **out)
         c->host->free(c->host, q, sizeof *q);
         return CULL_ERR_MEMORY;
     }
+    const chc_request wanted = {entries_of(c), c->batches};
+    if (c->method == &method_chc && chc_open(c->host, &q->history, &wanted) != CULL_OK) {
+        history_close(c->host, &q->history);
+        c->host->free(c->host, q, sizeof *q);
+        return CULL_ERR_MEMORY;
+    }
     q->history.test_most = c->method->tests_most(entries_of(c));
     q->culler = c;
     *out = q;
@@ -146,6 +170,7 @@ static void occlusion_close(cull_query *q)
 {
     const cull_host *host = q->culler->host;
     figures_add(q->culler->figures, &q->history.counters);
+    chc_close(host, &q->history);
     history_close(host, &q->history);
     host->free(host, q, sizeof *q);
 }
@@ -166,11 +191,18 @@ static occlusion_walk walk_of(cull_query *q, const cull_visit *visit, cull_batch
 
 static cull_progress occlusion_step(cull_query *q, const cull_visit *visit, cull_batch *batch)
 {
+    const cull_culler *c = q->culler;
+    if (c->has_hiz) {
+        q->history.counters.frames++;
+        return hiz_step(&c->hiz, q->history.says_places ? c->tree.places : NULL, visit, batch, &q->history.counters.hiz);
+    }
     occlusion_walk w = walk_of(q, visit, batch);
     if (visit->step == 0) walk_begin(&w);
     q->history.first_run = batch->run_count;
     walk_hear(&w);
-    return q->culler->method->step(&w);
+    const cull_progress progress = c->method->step(&w);
+    walk_count_turns(&w);
+    return progress;
 }
 
 static cull_progress occlusion_select(cull_query *q, const cull_visit *visit, cull_batch *batch)
@@ -190,6 +222,8 @@ static cull_progress occlusion_filter(cull_query *q, const cull_visit *visit, cu
 static size_t occlusion_explain(cull_query *q, const cull_visit *visit, uint32_t item, char *text, size_t size)
 {
     const occlusion_walk w = walk_of(q, visit, NULL);
+    const hiz *h = q->culler->has_hiz ? &q->culler->hiz : NULL;
+    if (h && item < w.tree->item_count) return explain_seen(hiz_sees(h, visit, q->history.says_places ? w.tree->ids[item] : item), text, size);
     return explain_item(&w, item, text, size);
 }
 
@@ -203,10 +237,14 @@ static const void *occlusion_get_extension(const cull_culler *c, const char *id)
 // ---- What the library offers ----
 
 static const cull_option occlusion_options[OPTION_COUNT] = {
-    [OPTION_METHOD] = {"method", "twophase", "wait last twophase",
+    [OPTION_METHOD] = {"method", "twophase", "wait last twophase chc hiz",
                        "wait: each box is tested and waited for; last: the last frame's answers are believed; twophase: what was seen is drawn, the rest "
-                       "tested in rounds"},
+                       "tested in rounds; chc: the same while tests are under way, several boxes under one; hiz: behind what the CPU draws of the items, nothing is asked of the host"},
     [OPTION_WALK] = {"walk", "auto", NULL, "lent: the select's tree, the select does not run; candidates: what the select found; auto: lent where that tree lists each item once"},
+    [OPTION_BATCH] = {"batch", "on", NULL, "of chc: on: tests are saved up, which saves state changes; off: each is asked as it is found"},
+    [OPTION_PRUNE] = {"prune", "on", NULL, "of hiz: on: tiles that a polygon does not touch are passed over; off: all tiles of its rectangle are looked at"},
+    [OPTION_THREADS] = {"threads", "1", NULL, "of hiz: 1, 2, 4 or 8 bands of the picture, each a task of its own; the same result"},
+    [OPTION_ISA] = {"isa", "auto", NULL, "of hiz: instruction set: auto, avx512, avx2, plain; all find the same set"},
 };
 
 static const cull_descriptor occlusion_descriptor = {
@@ -215,7 +253,7 @@ static const cull_descriptor occlusion_descriptor = {
     .summary = "drops what is hidden behind what is drawn, by box tests",
     .options = occlusion_options,
     .option_count = OPTION_COUNT,
-    .may_promise = CULL_SAMPLED,
+    .may_promise = CULL_SAMPLED | CULL_STATELESS,
 };
 
 static const cull_plugin occlusion_plugin = {

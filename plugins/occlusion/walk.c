@@ -3,11 +3,11 @@
 #include "walk.h"
 
 #include "ledger.h"
+#include "rest.h"
 
 #include <string.h>
 
 enum { CALM_SMALL = 2, CALM_MOST = 4, CALM_PIXELS = 1024 }; // an item is tested every 2^calm frames
-enum { MOVER_POLYGONS = 6 };                               // a mover's polygons are not told: a box
 enum { SAVED_LOOKED_AT = 64 };                             // items
 enum { OPEN_LEAST = 2, OPEN_MOST = 3 };                    // a node seen is not tested again for about 2^OPEN_LEAST frames and more
 
@@ -90,9 +90,15 @@ static float beyond(float low, float high, float eye)
     return eye < low ? low - eye : eye > high ? eye - high : 0;
 }
 
+static int is_box(const cull_box *box)
+{
+    return box->min.x <= box->max.x && box->min.y <= box->max.y && box->min.z <= box->max.z;
+}
+
 float walk_key(const occlusion_walk *w, const cull_box *box)
 {
     float key;
+    if (!is_box(box)) return WALK_NO_NUMBER;
     if (w->visit->view->eye[3] == 0) {
         const cull_vec3 towards = {w->eye[0], w->eye[1], w->eye[2]}, p = cull_box_corner(*box, towards);
         key = -(towards.x * p.x + towards.y * p.y + towards.z * p.z);
@@ -100,7 +106,7 @@ float walk_key(const occlusion_walk *w, const cull_box *box)
         const float x = beyond(box->min.x, box->max.x, w->eye[0]), y = beyond(box->min.y, box->max.y, w->eye[1]), z = beyond(box->min.z, box->max.z, w->eye[2]);
         key = x * x + y * y + z * z;
     }
-    return key == key ? key : -1;
+    return key == key ? key : WALK_NO_NUMBER;
 }
 
 cull_box walk_box(const occlusion_walk *w, tree_entry e)
@@ -112,7 +118,7 @@ cull_box walk_box(const occlusion_walk *w, tree_entry e)
 // ---- Drawing ----
 
 // first_run: runs of earlier steps are the host's already.
-static void put_run(occlusion_walk *w, uint32_t first, uint32_t count)
+void walk_put_run(occlusion_walk *w, uint32_t first, uint32_t count)
 {
     cull_batch *b = w->batch;
     cull_run *last = b->run_count > w->h->first_run ? &b->runs[b->run_count - 1] : NULL;
@@ -127,7 +133,7 @@ void walk_draw(occlusion_walk *w, uint32_t place)
     if (h->drawn[place] == h->serial) return;
     h->drawn[place] = h->serial;
     h->drawn_list[h->drawn_count++] = place;
-    put_run(w, w->ids ? w->ids[place] : place, 1);
+    walk_put_run(w, w->ids ? w->ids[place] : place, 1);
 }
 
 // ---- Subtrees ----
@@ -161,13 +167,13 @@ static void draw_unlisted(occlusion_walk *w, uint32_t place)
 {
     if (w->h->drawn[place] == w->h->serial) return;
     w->h->drawn[place] = w->h->serial;
-    put_run(w, w->ids ? w->ids[place] : place, 1);
+    walk_put_run(w, w->ids ? w->ids[place] : place, 1);
 }
 
 static void draw_whole(occlusion_walk *w, const tree_node *node)
 {
     for (uint32_t i = 0; i < node->below_count; i++) w->h->drawn[node->first_below + i] = w->h->serial;
-    put_run(w, node->first_below, node->below_count);
+    walk_put_run(w, node->first_below, node->below_count);
 }
 
 uint32_t walk_draw_below(occlusion_walk *w, uint32_t node)
@@ -244,7 +250,7 @@ int walk_draw_untested(occlusion_walk *w, uint32_t node)
 
 void walk_draw_mover(occlusion_walk *w, uint32_t mover)
 {
-    put_run(w, w->visit->movers[mover].id, 1);
+    walk_put_run(w, w->visit->movers[mover].id, 1);
 }
 
 // ---- Testing ----
@@ -254,7 +260,7 @@ void walk_pend(occlusion_walk *w, tree_entry e)
     w->h->pending[w->h->pending_count++] = e;
 }
 
-static void put_test(occlusion_walk *w, const cull_box *box, uint32_t tag)
+void walk_put_test(occlusion_walk *w, const cull_box *box, uint32_t tag)
 {
     w->batch->tests[w->batch->test_count++] = (cull_test){*box, tag, 0};
     w->h->counters.tests++;
@@ -268,7 +274,7 @@ static void enter(occlusion_walk *w, tree_entry e, uint32_t cost, uint32_t polyg
         page = unit == TREE_NONE ? NULL : &w->h->pages[unit];
     }
     if (page) ledger_enter(page, cost, polygons);
-    ledger_enter(&w->h->zone, cost, polygons);
+    ledger_enter_zone(&w->h->zone, cost, polygons);
 }
 
 uint32_t walk_ask(occlusion_walk *w)
@@ -278,7 +284,7 @@ uint32_t walk_ask(occlusion_walk *w)
     h->tested_count = h->pending_count < room ? h->pending_count : room;
     for (uint32_t i = 0; i < h->tested_count; i++) {
         const cull_box box = walk_box(w, h->pending[i]);
-        put_test(w, &box, i);
+        walk_put_test(w, &box, i);
     }
     h->counters.waited += h->tested_count;
     return h->tested_count;
@@ -298,6 +304,10 @@ static void hear_final(occlusion_walk *w, const cull_answer *a)
 {
     occlusion_history *h = w->h;
     const uint32_t place = a->tag & ~WALK_FINAL;
+    if (h->zone.is_off) {
+        rest_hear(w, place, a->pixels);
+        return;
+    }
     if (place >= w->tree->item_count || !(h->items[place] & ITEM_SEEN)) return;
     const tree_entry e = tree_entry_of_item(w->tree, place);
     enter(w, e, LEDGER_TEST, a->pixels ? 0 : w->tree->polygons[place]);
@@ -373,6 +383,38 @@ void walk_hear(occlusion_walk *w)
 int walk_ask_final(occlusion_walk *w, uint32_t place)
 {
     if (w->batch->test_count >= w->h->test_most) return 0;
-    put_test(w, &w->tree->boxes[place], WALK_FINAL | place);
+    walk_put_test(w, place == w->tree->item_count ? &w->tree->nodes[0].box : &w->tree->boxes[place], WALK_FINAL | place);
     return 1;
+}
+
+void walk_count_turns(occlusion_walk *w)
+{
+    occlusion_history *h = w->h;
+    const uint32_t draws = w->batch->run_count > h->first_run, tests = w->batch->test_count > 0;
+    if (draws && h->is_testing) h->counters.turns++;
+    if (draws) h->is_testing = 0;
+    if (tests && !h->is_testing) h->counters.turns++;
+    if (tests) h->is_testing = 1;
+}
+
+// ---- Who keeps tests of his own ----
+
+void walk_settle(occlusion_walk *w, const walk_finding *f)
+{
+    const uint32_t cost = (LEDGER_TEST + f->step_cost) / f->shared_by;
+    w->h->counters.wasted += f->pixels != 0 && f->shared_by == 1;
+    enter(w, f->entry, cost ? cost : 1, f->pixels ? 0 : polygons_saved(w, f->entry));
+    if (!tree_is_node(w->tree, f->entry)) return;
+    if (!f->pixels) w->h->nodes[f->entry] = 0;
+    else if (f->shared_by == 1) open_for_a_while(w, f->entry);
+}
+
+void walk_hear_drawn(occlusion_walk *w, uint32_t place, uint32_t pixels)
+{
+    occlusion_history *h = w->h;
+    const int is_drawn = h->drawn[place] == h->serial;
+    enter(w, tree_entry_of_item(w->tree, place), LEDGER_TEST, pixels ? 0 : w->tree->polygons[place]);
+    if (pixels) return;
+    history_lose(h, place);
+    if (is_drawn) h->items[place] = ITEM_LOST;
 }

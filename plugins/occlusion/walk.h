@@ -7,6 +7,8 @@
 
 #include <portcullis/plane.h>
 
+#include <float.h>
+
 typedef struct occlusion_walk {
     const occlusion_tree *tree;
     occlusion_history *h;
@@ -21,18 +23,19 @@ typedef enum walk_place { WALK_OUT, WALK_CUT, WALK_IN } walk_place; // of a box 
 
 // Tags of tests: FINAL and an item's place, asked when the frame was complete; else a place in h->pending.
 #define WALK_FINAL 0x80000000u
+#define WALK_NO_NUMBER (-FLT_MAX) // a key
 
 // Begins a frame (step 0): serial, marks of candidates and pictures. Call once before all else.
 void walk_begin(occlusion_walk *w);
 walk_place walk_place_of(const occlusion_walk *w, const cull_box *box);
 
 // The square of the distance to the nearest point of the box, or how far it lies along the view for an infinitely far
-// viewer. -1 for what is no number: that comes first.
+// viewer. WALK_NO_NUMBER for what is none: that comes first, and counts as near.
 float walk_key(const occlusion_walk *w, const cull_box *box);
 
 static inline int walk_is_near(const occlusion_walk *w, float key)
 {
-    return w->near2 >= 0 && !(key > w->near2);
+    return key == WALK_NO_NUMBER || (w->near2 >= 0 && !(key > w->near2));
 }
 
 // The node has something to look at: of a walk over candidates, one of them lies below.
@@ -46,6 +49,8 @@ static inline int walk_is_masked(const occlusion_walk *w, uint32_t place)
     return w->h->mask_used && (w->h->masked[place / 64] >> (place % 64) & 1);
 }
 
+enum { MOVER_POLYGONS = 6 }; // a mover's polygons are not told: a box
+void walk_put_run(occlusion_walk *w, uint32_t first, uint32_t count); // as said to the host
 // Drawn in this step; an item that the frame has drawn is not drawn again.
 void walk_draw(occlusion_walk *w, uint32_t place);
 uint32_t walk_draw_below(occlusion_walk *w, uint32_t node); // all items of the subtree that touch the volumes; how many
@@ -83,7 +88,18 @@ void walk_pend(occlusion_walk *w, tree_entry e);
 uint32_t walk_ask(occlusion_walk *w);
 // Reads answers to them into h->pixels; entries without an answer have 1.
 void walk_hear(occlusion_walk *w);
-// A test of an item after all draws; the answer comes in a later frame. 0: no room.
+// A test of an item, or with item_count for its place of all of them, after all draws; the answer comes in a later frame. 0: no room.
 int walk_ask_final(occlusion_walk *w, uint32_t place);
+
+// The end of a step: how often the host goes from drawing to testing, or back.
+void walk_count_turns(occlusion_walk *w);
+
+// For who keeps tests of his own. There is room; tag below WALK_FINAL.
+void walk_put_test(occlusion_walk *w, const cull_box *box, uint32_t tag);
+// An answer that the frame needed: to the ledger, and to what is opened next time.
+typedef struct walk_finding { tree_entry entry; uint32_t pixels, shared_by, step_cost; } walk_finding; // shared_by: entries under the test
+void walk_settle(occlusion_walk *w, const walk_finding *f);
+// The answer to a test of an item held for seen, or drawn in this frame.
+void walk_hear_drawn(occlusion_walk *w, uint32_t place, uint32_t pixels);
 
 #endif

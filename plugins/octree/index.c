@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "index.h"
 
-#include <portcullis/box.h>
-#include <portcullis/face.h>
-
 #include <string.h>
 
-enum { ALIGN = 64 };
+enum { ALIGN = 64, STEPS_MOST = 255 };
 
 typedef struct level { // entries of the level above
     cull_box *boxes;
@@ -74,28 +71,6 @@ static int levels_make(builder *b)
     return 1;
 }
 
-// ---- Blocks ----
-
-static void block_fill(const cull_box *boxes, uint32_t count, float *block)
-{
-    for (int i = 0; i < INDEX_BOX_FLOATS; i++) block[i] = i < INDEX_BOX_FLOATS / 2 ? INFINITY : -INFINITY; // touches nothing
-    for (uint32_t i = 0; i < count; i++) {
-        const float row[6] = {boxes[i].min.x, boxes[i].min.y, boxes[i].min.z, boxes[i].max.x, boxes[i].max.y, boxes[i].max.z};
-        for (uint32_t r = 0; r < 6; r++) block[r * INDEX_WIDTH + i] = row[r];
-    }
-}
-
-static void faces_fill(const builder *b, uint32_t leaf, float *faces)
-{
-    const uint32_t first = b->levels[1].starts[leaf], count = b->levels[1].starts[leaf + 1] - first;
-    for (uint32_t i = 0; i < INDEX_WIDTH; i++) {
-        cull_face face = {{0, 0, 0}, 0, 0};
-        if (i < count) face = cull_face_of(b->zone, b->order[first + i]);
-        const float row[5] = {face.normal[0], face.normal[1], face.normal[2], face.offset, face.doubt};
-        for (uint32_t r = 0; r < 5; r++) faces[r * INDEX_WIDTH + i] = row[r];
-    }
-}
-
 // ---- Nodes ----
 
 typedef struct towards { const index_order *order; uint32_t octant; int is_inside; } towards;
@@ -114,14 +89,14 @@ static double distance_to(const towards *t, cull_box box)
 
 static uint64_t sorted_by(const towards *t, const cull_box *boxes, uint32_t count)
 {
-    uint32_t sorted[INDEX_WIDTH];
+    uint32_t sorted[CULL_BLOCK_WIDTH];
     uint64_t order = 0;
     for (uint32_t i = 0; i < count; i++) {
         uint32_t at = i;
         for (; at && distance_to(t, boxes[sorted[at - 1]]) > distance_to(t, boxes[i]); at--) sorted[at] = sorted[at - 1];
         sorted[at] = i;
     }
-    for (uint32_t i = 0; i < INDEX_WIDTH; i++) order |= (uint64_t)(i < count ? sorted[i] : i) << 4 * i;
+    for (uint32_t i = 0; i < CULL_BLOCK_WIDTH; i++) order |= (uint64_t)(i < count ? sorted[i] : i) << 4 * i;
     return order;
 }
 
@@ -139,6 +114,65 @@ static void order_fill(const builder *b, uint32_t l, uint32_t n, index_order *ou
     }
 }
 
+// ---- Bottoms: boxes in steps ----
+
+static float coordinate(const index_bottom *b, int axis, uint32_t steps)
+{
+    const float along = b->step[axis] * (float)steps; // rounded here and below as in the walk
+    return b->origin[axis] + along;
+}
+
+// The least step, or nearly, of which 255 reach from low to high.
+static void axis_fill(index_bottom *b, int axis, float low, float high)
+{
+    b->origin[axis] = low;
+    b->step[axis] = 0;
+    if (!(low < high)) return; // all at one place, or nothing there
+    b->step[axis] = cull_float_up(((double)high - (double)low) / STEPS_MOST);
+    for (double more = 1.0 / 1048576; coordinate(b, axis, STEPS_MOST) < high; more *= 2) // few: where low is far off, its rounding is wide
+        b->step[axis] = cull_float_up((double)b->step[axis] * (1 + more));
+}
+
+static uint8_t steps_below(const index_bottom *b, int axis, float value)
+{
+    uint32_t least = 0, most = STEPS_MOST; // the last one that isn't above: least is not
+    while (least < most) {
+        const uint32_t middle = (least + most + 1) / 2;
+        if (coordinate(b, axis, middle) <= value) least = middle;
+        else most = middle - 1;
+    }
+    return (uint8_t)least;
+}
+
+static uint8_t steps_above(const index_bottom *b, int axis, float value)
+{
+    uint32_t least = 0, most = STEPS_MOST; // the first one that isn't below: most is not
+    while (least < most) {
+        const uint32_t middle = (least + most) / 2;
+        if (coordinate(b, axis, middle) >= value) most = middle;
+        else least = middle + 1;
+    }
+    return (uint8_t)most;
+}
+
+static void bottom_fill(const cull_box *boxes, uint32_t count, index_bottom *out)
+{
+    cull_box all = cull_box_none();
+    memset(out, 0, sizeof *out);
+    if (!count) return;
+    for (uint32_t i = 0; i < count; i++) all = cull_box_union(all, boxes[i]);
+    for (int axis = 0; axis < 3; axis++) {
+        uint8_t *const low = out->steps + axis * CULL_BLOCK_WIDTH, *const high = low + 3 * CULL_BLOCK_WIDTH;
+        axis_fill(out, axis, (&all.min.x)[axis], (&all.max.x)[axis]);
+        for (uint32_t i = 0; i < count; i++) {
+            low[i] = steps_below(out, axis, (&boxes[i].min.x)[axis]);
+            high[i] = steps_above(out, axis, (&boxes[i].max.x)[axis]);
+        }
+    }
+}
+
+// ---- Nodes by items ----
+
 // The first item below an entry of level l.
 static uint32_t first_item(const builder *b, uint32_t l, uint32_t entry)
 {
@@ -146,14 +180,24 @@ static uint32_t first_item(const builder *b, uint32_t l, uint32_t entry)
     return entry;
 }
 
+static void firsts_fill(const builder *b, uint32_t l, cull_run children, uint32_t *firsts)
+{
+    for (uint32_t i = 0; i <= CULL_BLOCK_WIDTH; i++) firsts[i] = first_item(b, l - 1, children.first + (i < children.count ? i : children.count));
+}
+
+static cull_run children_of(const builder *b, uint32_t l, uint32_t n)
+{
+    const uint32_t *starts = b->levels[l].starts;
+    return (cull_run){starts[n], starts[n + 1] - starts[n]};
+}
+
 static void node_fill(const builder *b, uint32_t l, uint32_t n, index_node *out)
 {
-    const cull_box *boxes = b->levels[l - 1].boxes;
-    const uint32_t first = b->levels[l].starts[n], count = b->levels[l].starts[n + 1] - first;
+    const cull_run children = children_of(b, l, n);
     memset(out, 0, sizeof *out);
-    block_fill(boxes + first, count, out->boxes);
-    for (uint32_t i = 0; i <= INDEX_WIDTH; i++) out->firsts[i] = first_item(b, l - 1, first + (i < count ? i : count));
-    out->child_count = count;
+    cull_block_fill(b->levels[l - 1].boxes + children.first, children.count, out->boxes);
+    firsts_fill(b, l, children, out->firsts);
+    out->child_count = children.count;
 }
 
 static size_t lines(size_t bytes)
@@ -163,6 +207,7 @@ static size_t lines(size_t bytes)
 
 typedef struct parts { // of the one block of memory
     index_node *nodes;
+    index_bottom *bottoms;
     float *leaves, *faces;
     index_order *orders;
     uint32_t *leaf_firsts;
@@ -172,37 +217,45 @@ static int parts_alloc(const builder *b, index_faces faces, octree_index *out, p
 {
     const size_t leaves = b->levels[1].count, nodes = out->node_count, bottoms = b->levels[2].count;
     const int has_faces = faces == INDEX_FACES && b->zone->walls && b->zone->item_count;
-    const size_t leaves_at = nodes * sizeof(index_node), faces_at = leaves_at + leaves * INDEX_BOX_FLOATS * sizeof(float);
-    const size_t orders_at = faces_at + (has_faces ? leaves * INDEX_FACE_FLOATS * sizeof(float) : 0);
-    const size_t firsts_at = orders_at + lines((nodes - bottoms) * sizeof(index_order)), bytes = firsts_at + lines((leaves + 1) * sizeof(uint32_t));
+    const size_t bottoms_at = nodes * sizeof(index_node), leaves_at = bottoms_at + bottoms * sizeof(index_bottom);
+    const size_t faces_at = leaves_at + leaves * CULL_BLOCK_FLOATS * sizeof(float);
+    const size_t orders_at = faces_at + (has_faces ? leaves * CULL_BLOCK_FACE_FLOATS * sizeof(float) : 0);
+    const size_t firsts_at = orders_at + lines(nodes * sizeof(index_order)), bytes = firsts_at + lines((leaves + 1) * sizeof(uint32_t));
     char *memory = b->host->alloc(b->host, bytes, ALIGN);
     if (!memory) return 0;
-    *p = (parts){(index_node *)(void *)memory, (float *)(void *)(memory + leaves_at), has_faces ? (float *)(void *)(memory + faces_at) : NULL,
-                 (index_order *)(void *)(memory + orders_at), (uint32_t *)(void *)(memory + firsts_at)};
-    *out = (octree_index){.item_count = b->zone->item_count, .leaf_count = (uint32_t)leaves, .node_count = out->node_count,
-                          .level_count = b->level_count - 1, .leaves = p->leaves, .leaf_firsts = p->leaf_firsts, .nodes = p->nodes,
-                          .orders = p->orders, .faces = p->faces, .bottom_count = (uint32_t)bottoms, .memory = memory, .bytes = bytes};
+    *p = (parts){(index_node *)(void *)memory, (index_bottom *)(void *)(memory + bottoms_at), (float *)(void *)(memory + leaves_at),
+                 has_faces ? (float *)(void *)(memory + faces_at) : NULL, (index_order *)(void *)(memory + orders_at),
+                 (uint32_t *)(void *)(memory + firsts_at)};
+    *out = (octree_index){.item_count = b->zone->item_count, .leaf_count = (uint32_t)leaves, .bottom_count = (uint32_t)bottoms,
+                          .node_count = out->node_count, .level_count = b->level_count - 1, .leaves = p->leaves, .leaf_firsts = p->leaf_firsts,
+                          .bottoms = p->bottoms, .nodes = p->nodes, .orders = p->orders, .faces = p->faces, .memory = memory, .bytes = bytes};
     return 1;
 }
 
 static int index_fill(const builder *b, index_faces faces, octree_index *out)
 {
     parts p;
-    for (uint32_t l = 2; l <= b->level_count; l++) out->node_count += b->levels[l].count;
-    if (!parts_alloc(b, faces, out, &p)) return 0;
+    for (uint32_t l = 3; l <= b->level_count; l++) out->node_count += b->levels[l].count;
+    if (b->levels[1].count > INDEX_LEAVES_MOST || !parts_alloc(b, faces, out, &p)) return 0;
     const uint32_t *const starts = b->levels[1].starts;
     memcpy(p.leaf_firsts, starts, ((size_t)out->leaf_count + 1) * sizeof *starts);
     for (uint32_t i = 0; i < out->leaf_count; i++) {
-        block_fill(b->levels[0].boxes + starts[i], starts[i + 1] - starts[i], p.leaves + (size_t)i * INDEX_BOX_FLOATS);
-        if (p.faces) faces_fill(b, i, p.faces + (size_t)i * INDEX_FACE_FLOATS);
+        cull_block_fill(b->levels[0].boxes + starts[i], starts[i + 1] - starts[i], p.leaves + (size_t)i * CULL_BLOCK_FLOATS);
+        if (p.faces) cull_block_fill_faces(b->zone, b->order + starts[i], starts[i + 1] - starts[i], p.faces + (size_t)i * CULL_BLOCK_FACE_FLOATS);
+    }
+    for (uint32_t i = 0; i < out->bottom_count; i++) {
+        const cull_run children = children_of(b, 2, i);
+        bottom_fill(b->levels[1].boxes + children.first, children.count, &p.bottoms[i]);
+        firsts_fill(b, 2, children, p.bottoms[i].firsts);
+        p.bottoms[i].leaves = children.first << 4 | (children.count - 1);
     }
     uint32_t n = 0, below = 0; // below: the first node of the level below
-    for (uint32_t l = 2; l <= b->level_count; l++) {
+    for (uint32_t l = 3; l <= b->level_count; l++) {
         const uint32_t here = n;
         for (uint32_t i = 0; i < b->levels[l].count; i++, n++) {
             node_fill(b, l, i, &p.nodes[n]);
             p.nodes[n].first_child = below + b->levels[l].starts[i];
-            if (l > 2) order_fill(b, l, i, &p.orders[n - out->bottom_count]);
+            order_fill(b, l, i, &p.orders[n]);
         }
         below = here;
     }

@@ -6,26 +6,44 @@
 #ifndef PORTCULLIS_OCTREE_INDEX_H
 #define PORTCULLIS_OCTREE_INDEX_H
 
-#include <portcullis/culler.h>
+#include <portcullis/block.h>
 
 enum {
-    INDEX_WIDTH = 16,       // boxes in a block: a vector of AVX-512
     INDEX_LEAST = 8,        // in all but a level's only block: a tree at least 8 wide
     INDEX_LEVELS_MOST = 12, // 8^11 > 2^32 items, and one: a root stands over even a single leaf
-    INDEX_BOX_FLOATS = 96,  // a block: 16 each of min x, min y, min z, max x, max y, max z; what is not there is never visible
-    INDEX_FACE_FLOATS = 80, // a block: 16 each of normal x, y, z, offset, doubt
     INDEX_OCTANTS = 8,
+    INDEX_LEAVES_MOST = 1 << 28, // as a bottom's `leaves` has room for
 };
 
+// A node over leaves. Its children's boxes are told in steps of its own box's 255th, rounded outwards: a node needs half the memory, and an
+// item's own box decides in the end (Ylitie, Karras and Laine, Compressed Wide BVHs, 2017).
+typedef struct index_bottom {
+    uint32_t firsts[CULL_BLOCK_WIDTH + 1]; // the first item of each child; from child_count on: behind the node's last item
+    uint32_t leaves;                        // first << 4 | the number of children less one
+    float origin[3], step[3];               // metres: origin + step * steps, in float as written, is the coordinate
+    uint8_t steps[6 * CULL_BLOCK_WIDTH];    // rows as of a block
+} index_bottom; // three cache lines
+
+static inline uint32_t bottom_first_leaf(const index_bottom *b)
+{
+    return b->leaves >> 4;
+}
+
+static inline uint32_t bottom_child_count(const index_bottom *b)
+{
+    return (b->leaves & 15) + 1;
+}
+
+// A node over nodes.
 typedef struct index_node {
-    float boxes[INDEX_BOX_FLOATS];
-    uint32_t firsts[INDEX_WIDTH + 1]; // the first item of each child; from child_count on: behind the node's last item
-    uint32_t first_child;             // in nodes, or in leaves
+    float boxes[CULL_BLOCK_FLOATS];
+    uint32_t firsts[CULL_BLOCK_WIDTH + 1]; // as above
+    uint32_t first_child;             // in nodes, or, of level 2, in bottoms
     uint32_t child_count;
     uint32_t reserved[13]; // eight cache lines
 } index_node;
 
-// Of a node over nodes: its children near to far, four bits each, by the octant of its box that the eye is in or beyond.
+// Of a node over nodes, its children near to far, four bits each, by the octant of its box that the eye is in or beyond.
 typedef struct index_order {
     float centre[3], half[3];
     uint64_t children[2][INDEX_OCTANTS]; // [0]: from the octant's middle, [1]: from far off along its diagonal; octant bit 0: on the
@@ -33,14 +51,14 @@ typedef struct index_order {
 } index_order;
 
 typedef struct octree_index {
-    uint32_t item_count, leaf_count, node_count;
-    uint32_t level_count; // of nodes, at least one; the root is the last node
-    const float *leaves;  // blocks of INDEX_BOX_FLOATS
+    uint32_t item_count, leaf_count, bottom_count, node_count;
+    uint32_t level_count; // of nodes, at least one; the root is the last node, or the only bottom
+    const float *leaves;  // blocks of CULL_BLOCK_FLOATS
     const uint32_t *leaf_firsts; // leaf_count + 1
-    const index_node *nodes;     // level 1 first
-    const index_order *orders;   // of all nodes but level 1
-    const float *faces;          // blocks of INDEX_FACE_FLOATS, one a leaf; NULL: back faces are kept
-    uint32_t bottom_count;       // nodes of level 1
+    const index_bottom *bottoms; // level 1
+    const index_node *nodes;     // level 2 first
+    const index_order *orders;   // of the nodes
+    const float *faces;          // blocks of CULL_BLOCK_FACE_FLOATS, one a leaf; NULL: back faces are kept
     void *memory;
     size_t bytes;
 } octree_index;
@@ -51,7 +69,7 @@ typedef enum index_faces { INDEX_NO_FACES, INDEX_FACES } index_faces;
 cull_result index_build(const cull_host *host, const cull_zone *zone, const uint32_t *order, index_faces faces, octree_index *out);
 void index_free(const cull_host *host, octree_index *index);
 
-// Divides `count` boxes in a row into runs of INDEX_LEAST .. INDEX_WIDTH such that the boxes of the runs are small. Writes where each starts
+// Divides `count` boxes in a row into runs of INDEX_LEAST .. CULL_BLOCK_WIDTH such that the boxes of the runs are small. Writes where each starts
 // and, behind, count; returns how many runs. starts: room for count / INDEX_LEAST + 2. 0 where memory is short; count is at least 1.
 uint32_t index_pack(const cull_host *host, const cull_box *boxes, uint32_t count, uint32_t *starts);
 

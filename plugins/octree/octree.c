@@ -7,8 +7,9 @@
 #include "cells.h"
 #include "explain.h"
 #include "ray.h"
-#include "unite.h"
 #include "walk.h"
+
+#include <portcullis/runs.h>
 
 #include <stdio.h>
 #include <string.h>
@@ -126,14 +127,14 @@ static uint32_t select_groups(const cull_culler *c, const cull_visit *visit, cul
 {
     const uint32_t most = walk_runs_most(&c->index);
     walk_query walk = {&c->index, visit->volumes, visit->view->eye, 0, WALK_ASCENDING};
-    run_list found = {out, 0}, next = {visit->scratch, 0}, both = {(cull_run *)visit->scratch + most, 0};
+    cull_run_list found = {out, 0}, next = {visit->scratch, 0}, both = {(cull_run *)visit->scratch + most, 0};
     for (uint32_t first = 0; first < visit->volume_count; first += walk.volume_count) {
         const uint32_t left = visit->volume_count - first;
         walk.volumes = visit->volumes + first;
         walk.volume_count = left < WALK_VOLUMES ? left : WALK_VOLUMES;
         next.count = c->kernel->walk(&walk, next.runs, nodes_visited);
-        runs_unite(&found, &next, &both);
-        const run_list spare = found;
+        cull_runs_unite(&found, &next, &both);
+        const cull_run_list spare = found;
         found = both;
         both = spare;
     }

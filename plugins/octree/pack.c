@@ -4,11 +4,7 @@
 // Invariant: a block costs what a plane's chance is to cut it, which goes with the sum of its box's edges, and a share of the block above.
 #include "index.h"
 
-#include <portcullis/box.h>
-
-#include <math.h>
-
-enum { WINDOW = INDEX_WIDTH };
+enum { WINDOW = CULL_BLOCK_WIDTH };
 
 typedef struct choice { double cost; uint32_t length; } choice; // of the best division of all boxes before; length of its last block
 
@@ -23,12 +19,12 @@ static double share_of(const cull_box *boxes, uint32_t count)
     const double quarter = 0.25;
     double sum = 0;
     uint32_t blocks = 0;
-    for (uint32_t first = 0; first < count; first += INDEX_WIDTH) {
+    for (uint32_t first = 0; first < count; first += CULL_BLOCK_WIDTH) {
         cull_box all = cull_box_none();
-        for (uint32_t i = first; i < count && i - first < INDEX_WIDTH; i++) all = cull_box_union(all, boxes[i]);
+        for (uint32_t i = first; i < count && i - first < CULL_BLOCK_WIDTH; i++) all = cull_box_union(all, boxes[i]);
         sum += edges(all);
         blocks++;
-        if (count - first <= INDEX_WIDTH) break; // first would pass 2^32
+        if (count - first <= CULL_BLOCK_WIDTH) break; // first would pass 2^32
     }
     return quarter * sum / blocks;
 }
@@ -48,7 +44,7 @@ static choice best_end(const cull_box *boxes, const choice *before, uint32_t end
 
 uint32_t index_pack(const cull_host *host, const cull_box *boxes, uint32_t count, uint32_t *starts)
 {
-    if (count <= INDEX_WIDTH) {
+    if (count <= CULL_BLOCK_WIDTH) {
         starts[0] = 0;
         starts[1] = count;
         return 1;

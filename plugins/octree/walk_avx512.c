@@ -1,56 +1,36 @@
 // The kernels for AVX-512: a block is a vector.
 // SPDX-License-Identifier: MIT
-#include "walk_plane.h"
-
 #if defined(__x86_64__)
 #include <immintrin.h>
+#define CULL_BLOCK_LANES 16
+#include "walk.h"
 
-static inline __m512 height(const float *x, const float *y, const float *z, const walk_plane *p)
+static inline __m512 bottom_row(const index_bottom *b, uint32_t at, int axis)
 {
-    const __m512 sx = _mm512_mul_ps(_mm512_load_ps(x), _mm512_set1_ps(p->x));
-    const __m512 sy = _mm512_mul_ps(_mm512_load_ps(y), _mm512_set1_ps(p->y));
-    const __m512 sz = _mm512_mul_ps(_mm512_load_ps(z), _mm512_set1_ps(p->z));
-    return _mm512_add_ps(_mm512_add_ps(sx, sy), sz);
+    const __m512 steps = _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128((const __m128i *)(const void *)(b->steps + at))));
+    return _mm512_add_ps(_mm512_set1_ps(b->origin[axis]), _mm512_mul_ps(_mm512_set1_ps(b->step[axis]), steps));
 }
 
-static inline uint32_t block_touch(const float *block, const walk_plane *planes, uint32_t which)
+static inline __m512 bottom_sum(const index_bottom *b, const cull_block_plane *p, uint32_t x, uint32_t y, uint32_t z)
 {
-    __mmask16 touching = 0xffff;
-    for (; which; which &= which - 1) {
-        const walk_plane *p = &planes[__builtin_ctz(which)];
-        const __m512 sum = height(block + p->inner_x, block + p->inner_y, block + p->inner_z, p);
-        touching = _mm512_mask_cmp_ps_mask(touching, sum, _mm512_set1_ps(p->limit), _CMP_GE_OQ);
-    }
-    return touching;
+    const __m512 sx = _mm512_mul_ps(bottom_row(b, x, 0), _mm512_set1_ps(p->x)), sy = _mm512_mul_ps(bottom_row(b, y, 1), _mm512_set1_ps(p->y));
+    return _mm512_add_ps(_mm512_add_ps(sx, sy), _mm512_mul_ps(bottom_row(b, z, 2), _mm512_set1_ps(p->z)));
 }
 
-static inline void block_split(const float *block, const walk_plane *planes, uint32_t which, walk_split *out)
+static inline void bottom_split(const index_bottom *b, const cull_block_plane *planes, uint32_t which, cull_block_split *out)
 {
     __mmask16 touching = 0xffff;
     __m512i cut = _mm512_setzero_si512();
     for (; which; which &= which - 1) {
-        const walk_plane *p = &planes[__builtin_ctz(which)];
+        const cull_block_plane *p = &planes[cull_lowest_bit(which)];
         const __m512 limit = _mm512_set1_ps(p->limit);
-        const __m512 inner = height(block + p->inner_x, block + p->inner_y, block + p->inner_z, p);
-        const __m512 outer = height(block + p->outer_x, block + p->outer_y, block + p->outer_z, p);
-        touching = _mm512_mask_cmp_ps_mask(touching, inner, limit, _CMP_GE_OQ);
-        const __mmask16 is_cut = _mm512_cmp_ps_mask(outer, limit, _CMP_NGE_UQ);
+        touching = _mm512_mask_cmp_ps_mask(touching, bottom_sum(b, p, p->inner_x, p->inner_y, p->inner_z), limit, _CMP_NLT_UQ);
+        const __mmask16 is_cut = _mm512_cmp_ps_mask(bottom_sum(b, p, p->outer_x, p->outer_y, p->outer_z), limit, _CMP_NGE_UQ);
         cut = _mm512_mask_or_epi32(cut, is_cut, cut, _mm512_set1_epi32((int)(which & -which)));
     }
     out->touching = touching;
     out->cut = _mm512_test_epi32_mask(cut, cut);
     _mm512_store_si512(out->planes, cut);
-}
-
-static inline uint32_t block_facing(const float *f, const float eye[4], float reach)
-{
-    const __m512 x = _mm512_mul_ps(_mm512_load_ps(f), _mm512_set1_ps(eye[0]));
-    const __m512 y = _mm512_mul_ps(_mm512_load_ps(f + 16), _mm512_set1_ps(eye[1]));
-    const __m512 z = _mm512_mul_ps(_mm512_load_ps(f + 32), _mm512_set1_ps(eye[2]));
-    const __m512 offset = _mm512_mul_ps(_mm512_load_ps(f + 48), _mm512_set1_ps(eye[3]));
-    const __m512 doubt = _mm512_mul_ps(_mm512_load_ps(f + 64), _mm512_set1_ps(reach));
-    const __m512 sum = _mm512_add_ps(_mm512_add_ps(_mm512_add_ps(x, y), z), _mm512_add_ps(offset, doubt));
-    return _mm512_cmp_ps_mask(sum, _mm512_setzero_ps(), _CMP_GE_OQ);
 }
 
 // Compressed in a register and stored whole: a compressing store is slow on some CPUs.

@@ -1,9 +1,8 @@
 // The walk down the tree, included by one source file per instruction set.
 // SPDX-License-Identifier: MIT
-// That file defines before:
-//   uint32_t block_touch(const float *block, const walk_plane *planes, uint32_t which)
-//   void block_split(const float *block, const walk_plane *planes, uint32_t which, walk_split *out)
-//   uint32_t block_facing(const float *faces, const float eye[4], float reach)
+// That file includes <portcullis/block.h> in its own lanes, and defines before:
+//   void bottom_split(const index_bottom *b, const cull_block_plane *planes, uint32_t which, cull_block_split *out): as cull_block_split_by, for
+//     boxes around the children's; a sum that is no number touches and is cut
 //   uint32_t *put_places(uint32_t bits, uint32_t base, uint32_t *out): base + b of each set bit b
 //   uint32_t *put_firsts(uint32_t bits, const uint32_t *firsts, uint32_t *out): firsts[b] of each set bit b
 //   uint32_t reorder(uint32_t bits, uint64_t order): bit i is bit (order >> 4 i & 15) of bits
@@ -20,21 +19,16 @@ typedef struct found { // in registers while a node is walked: what is written c
 
 typedef struct walk {
     const octree_index *index;
-    const walk_plane *planes;
+    const cull_block_plane *planes;
     const float *eye;
     found found;
     uint32_t nodes;
     walk_order order;
 } walk;
 
-static inline uint32_t lowest_bit(uint32_t bits)
-{
-    return (uint32_t)__builtin_ctz(bits);
-}
-
 static inline const float *leaf_at(const octree_index *index, uint32_t leaf)
 {
-    return index->leaves + (size_t)leaf * INDEX_BOX_FLOATS;
+    return index->leaves + (size_t)leaf * CULL_BLOCK_FLOATS;
 }
 
 // ---- What is found ----
@@ -89,30 +83,38 @@ static uint32_t changes_to_runs(found f, uint32_t *changes)
 
 // ---- One volume ----
 
-static inline void walk_split_node(walk *w, const index_node *node, uint32_t which, walk_split *out)
+static inline void walk_split_node(walk *w, const index_node *node, uint32_t which, cull_block_split *out)
 {
-    block_split(node->boxes, w->planes, which, out);
+    cull_block_split_by(node->boxes, w->planes, which, out);
     out->touching &= (1u << node->child_count) - 1;
     out->cut &= out->touching;
     w->nodes++;
 }
 
-static inline void walk_bottom(walk *w, const index_node *node, const walk_split *split)
+static inline void walk_split_bottom(walk *w, const index_bottom *node, uint32_t which, cull_block_split *out)
+{
+    bottom_split(node, w->planes, which, out);
+    out->touching &= UINT32_MAX >> (32 - bottom_child_count(node));
+    out->cut &= out->touching;
+    w->nodes++;
+}
+
+static inline void walk_bottom(walk *w, const index_bottom *node, const cull_block_split *split)
 {
     const uint32_t visible = split->touching & ~split->cut, *const firsts = node->firsts;
-    const float *const leaves = leaf_at(w->index, node->first_child);
-    const walk_plane *const planes = w->planes;
+    const float *const leaves = leaf_at(w->index, bottom_first_leaf(node));
+    const cull_block_plane *const planes = w->planes;
     uint32_t from = 0;
     found f = go_to(w->found, firsts[0]);
     for (uint32_t rest = split->cut; rest; rest &= rest - 1) {
-        const uint32_t c = lowest_bit(rest), base = firsts[c], count = firsts[c + 1] - base;
-        const uint32_t touching = block_touch(leaves + (size_t)c * INDEX_BOX_FLOATS, planes, split->planes[c]) & ((1u << count) - 1);
+        const uint32_t c = cull_lowest_bit(rest), base = firsts[c], count = firsts[c + 1] - base;
+        const uint32_t touching = cull_block_touch(leaves + (size_t)c * CULL_BLOCK_FLOATS, planes, split->planes[c]) & ((1u << count) - 1);
         if (from != c) f = put_children(f, firsts, visible, from, c);
         f = put_leaf(f, touching, base, count);
         from = c + 1;
     }
-    f = put_children(f, firsts, visible, from, node->child_count);
-    f.at = firsts[INDEX_WIDTH];
+    f = put_children(f, firsts, visible, from, bottom_child_count(node));
+    f.at = firsts[CULL_BLOCK_WIDTH];
     w->found = f;
     w->nodes += (uint32_t)__builtin_popcount(split->cut);
 }
@@ -123,7 +125,7 @@ static inline void walk_bottom(walk *w, const index_node *node, const walk_split
 static inline uint64_t near_order(const walk *w, const index_node *node)
 {
     if (w->order == WALK_ASCENDING) return AS_THEY_STAND;
-    const index_order *order = &w->index->orders[node - w->index->nodes - w->index->bottom_count];
+    const index_order *order = &w->index->orders[node - w->index->nodes];
     uint32_t octant = 0, is_outside = w->eye[3] == 0;
     for (uint32_t axis = 0; axis < 3; axis++) {
         const float off = w->eye[axis] - order->centre[axis] * w->eye[3];
@@ -133,34 +135,50 @@ static inline uint64_t near_order(const walk *w, const index_node *node)
     return order->children[is_outside][octant]; // no branch: nothing foretells it
 }
 
-static inline void prefetch_leaf(const float *block)
+// Always inlined: gcc 12 takes a function that only asks for memory for one without effect, and drops the call.
+__attribute__((always_inline)) static inline void prefetch_bytes(const void *from, size_t size)
 {
-    for (int line = 0; line < INDEX_BOX_FLOATS; line += INDEX_WIDTH) __builtin_prefetch(block + line);
+    for (size_t at = 0; at < size; at += 64) __builtin_prefetch((const char *)from + at);
 }
 
-static inline void prefetch_node(const index_node *node)
+// Of the leaves that will be looked at, the rows that the first of the node's planes reads: most nodes are cut by one.
+__attribute__((always_inline)) static inline void prefetch_leaves(const walk *w, const index_bottom *node, uint32_t planes, uint32_t cut)
 {
-    for (size_t at = 0; at < sizeof *node; at += 64) __builtin_prefetch((const char *)node + at);
+    const cull_block_plane *p = &w->planes[cull_lowest_bit(planes)];
+    const float *const leaves = leaf_at(w->index, bottom_first_leaf(node)), *const x = leaves + p->inner_x, *const y = leaves + p->inner_y,
+                *const z = leaves + p->inner_z;
+    for (; cut; cut &= cut - 1) {
+        const size_t at = (size_t)cull_lowest_bit(cut) * CULL_BLOCK_FLOATS;
+        __builtin_prefetch(x + at);
+        __builtin_prefetch(y + at);
+        __builtin_prefetch(z + at);
+    }
 }
 
-// The children that will be looked at, nodes or leaves.
-static inline void prefetch_children(const walk *w, const index_node *node, uint32_t level, const walk_split *split)
+// The children that will be looked at.
+__attribute__((always_inline)) static inline void prefetch_children(const walk *w, const index_node *node, uint32_t level, const cull_block_split *split)
 {
     for (uint32_t rest = split->cut; rest; rest &= rest - 1) {
-        const uint32_t c = lowest_bit(rest);
-        if (level > 1) prefetch_node(&w->index->nodes[node->first_child + c]);
-        else prefetch_leaf(leaf_at(w->index, node->first_child + c));
+        const uint32_t child = node->first_child + cull_lowest_bit(rest);
+        if (level > 2) prefetch_bytes(&w->index->nodes[child], sizeof(index_node));
+        else prefetch_bytes(&w->index->bottoms[child], sizeof(index_bottom));
     }
 }
 
 // A node over bottom nodes, walked as its items stand: near to far, child by child, breaks runs that would go on.
-static inline void walk_bottoms(walk *w, const index_node *node, const walk_split *split, const walk_split *below)
+static inline void walk_bottoms(walk *w, const index_node *node, const cull_block_split *split)
 {
     const uint32_t visible = split->touching & ~split->cut, *const firsts = node->firsts;
-    const index_node *const children = w->index->nodes + node->first_child;
+    const index_bottom *const children = w->index->bottoms + node->first_child;
+    cull_block_split below[CULL_BLOCK_WIDTH];
+    for (uint32_t rest = split->cut; rest; rest &= rest - 1) {
+        const uint32_t c = cull_lowest_bit(rest);
+        walk_split_bottom(w, &children[c], split->planes[c], &below[c]);
+        if (w->index->bytes > WALK_NEAR_BYTES) prefetch_leaves(w, &children[c], split->planes[c], below[c].cut);
+    }
     uint32_t from = 0;
     for (uint32_t rest = split->cut; rest; rest &= rest - 1) {
-        const uint32_t c = lowest_bit(rest);
+        const uint32_t c = cull_lowest_bit(rest);
         found f = go_to(w->found, firsts[from]);
         if (from != c) f = put_children(f, firsts, visible, from, c);
         f.at = firsts[c];
@@ -169,27 +187,27 @@ static inline void walk_bottoms(walk *w, const index_node *node, const walk_spli
         from = c + 1;
     }
     w->found = put_children(go_to(w->found, firsts[from]), firsts, visible, from, node->child_count);
-    w->found.at = firsts[INDEX_WIDTH];
+    w->found.at = firsts[CULL_BLOCK_WIDTH];
 }
 
 // All cut children are judged before the first is entered, so that their memory is on its way while others are worked
 // on. At most INDEX_LEVELS_MOST deep.
-static void walk_upper(walk *w, const index_node *node, uint32_t level, const walk_split *split)
+static void walk_upper(walk *w, const index_node *node, uint32_t level, const cull_block_split *split)
 {
-    walk_split below[INDEX_WIDTH];
+    if (level == 2) {
+        walk_bottoms(w, node, split);
+        return;
+    }
+    cull_block_split below[CULL_BLOCK_WIDTH];
     const index_node *const children = w->index->nodes + node->first_child;
     for (uint32_t rest = split->cut; rest; rest &= rest - 1) {
-        const uint32_t c = lowest_bit(rest);
+        const uint32_t c = cull_lowest_bit(rest);
         walk_split_node(w, &children[c], split->planes[c], &below[c]);
         if (w->index->bytes > WALK_NEAR_BYTES) prefetch_children(w, &children[c], level - 1, &below[c]);
     }
-    if (level == 2) {
-        walk_bottoms(w, node, split, below);
-        return;
-    }
     const uint64_t order = near_order(w, node);
     for (uint32_t rest = reorder(split->touching, order); rest; rest &= rest - 1) {
-        const uint32_t c = (uint32_t)(order >> 4 * lowest_bit(rest)) & 15;
+        const uint32_t c = (uint32_t)(order >> 4 * cull_lowest_bit(rest)) & 15;
         if (!(split->cut >> c & 1)) w->found = put_whole(w->found, node->firsts[c], node->firsts[c + 1]);
         else walk_upper(w, &children[c], level - 1, &below[c]);
     }
@@ -197,53 +215,43 @@ static void walk_upper(walk *w, const index_node *node, uint32_t level, const wa
 
 // A root over bottom nodes has nothing above to be ordered by: its children come near to far. Apart from walk_upper, which inlined copies
 // of walk_bottom make slower.
-__attribute__((noinline)) static void walk_small(walk *w, const index_node *root, const walk_split *split)
+__attribute__((noinline)) static void walk_small(walk *w, const index_node *root, const cull_block_split *split)
 {
     const uint64_t order = near_order(w, root);
     for (uint32_t rest = reorder(split->touching, order); rest; rest &= rest - 1) {
-        const uint32_t c = (uint32_t)(order >> 4 * lowest_bit(rest)) & 15;
-        walk_split one;
+        const uint32_t c = (uint32_t)(order >> 4 * cull_lowest_bit(rest)) & 15;
+        cull_block_split one;
         if (!(split->cut >> c & 1)) {
             w->found = put_whole(w->found, root->firsts[c], root->firsts[c + 1]);
             continue;
         }
-        const index_node *child = &w->index->nodes[root->first_child + c];
-        walk_split_node(w, child, split->planes[c], &one);
+        const index_bottom *child = &w->index->bottoms[root->first_child + c];
+        walk_split_bottom(w, child, split->planes[c], &one);
         walk_bottom(w, child, &one);
     }
-}
-
-static void planes_ready(const cull_volume *volume, walk_plane *out)
-{
-    for (uint32_t k = 0; k < volume->plane_count; k++) {
-        const cull_plane p = volume->planes[k];
-        const uint32_t x = p.normal.x >= 0 ? 48 : 0, y = p.normal.y >= 0 ? 64 : 16, z = p.normal.z >= 0 ? 80 : 32;
-        out[k] = (walk_plane){p.normal.x, p.normal.y, p.normal.z, -p.offset, x, y, z, 48 - x, 80 - y, 112 - z};
-    }
-}
-
-static inline uint32_t all_planes(const cull_volume *volume)
-{
-    return volume->plane_count ? UINT32_MAX >> (CULL_MAX_PLANES - volume->plane_count) : 0;
 }
 
 static uint32_t walk_one(const walk_query *q, cull_run *runs, uint32_t *nodes_visited)
 {
     uint32_t *const changes = &runs[0].first;
     const octree_index *index = q->index;
-    const index_node *root = &index->nodes[index->node_count - 1];
-    walk_plane planes[CULL_MAX_PLANES];
-    walk_split split;
+    cull_block_plane planes[CULL_MAX_PLANES];
+    cull_block_split split;
     if (q->volumes->plane_count == 0) {
         runs[0] = (cull_run){0, index->item_count};
         return 1;
     }
-    planes_ready(q->volumes, planes);
+    cull_block_planes(q->volumes, planes);
     walk w = {.index = index, .planes = planes, .eye = q->eye, .found = {changes, 0, 0}, .order = q->order};
-    walk_split_node(&w, root, all_planes(q->volumes), &split);
-    if (index->level_count == 1) walk_bottom(&w, root, &split);
-    else if (index->level_count == 2 && w.order == WALK_NEAR_FIRST) walk_small(&w, root, &split);
-    else walk_upper(&w, root, index->level_count, &split);
+    if (index->level_count == 1) {
+        walk_split_bottom(&w, index->bottoms, cull_block_all_planes(q->volumes), &split);
+        walk_bottom(&w, index->bottoms, &split);
+    } else {
+        const index_node *root = &index->nodes[index->node_count - 1];
+        walk_split_node(&w, root, cull_block_all_planes(q->volumes), &split);
+        if (index->level_count == 2 && w.order == WALK_NEAR_FIRST) walk_small(&w, root, &split);
+        else walk_upper(&w, root, index->level_count, &split);
+    }
     *nodes_visited += w.nodes;
     return changes_to_runs(w.found, changes);
 }

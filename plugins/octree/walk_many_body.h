@@ -6,7 +6,8 @@
 typedef struct many_walk {
     walk w;
     float reach; // of the eye
-    walk_plane planes[WALK_VOLUMES][CULL_MAX_PLANES];
+    int is_far;  // the index is larger than the near caches
+    cull_block_plane planes[WALK_VOLUMES][CULL_MAX_PLANES];
 } many_walk;
 
 typedef struct volume_part { uint32_t volume, planes; } volume_part; // the planes that cut what is looked at
@@ -21,22 +22,20 @@ static inline void many_leaf(many_walk *m, uint32_t leaf, uint32_t visible)
     const octree_index *index = m->w.index;
     const uint32_t base = index->leaf_firsts[leaf], end = index->leaf_firsts[leaf + 1];
     visible &= (1u << (end - base)) - 1;
-    if (index->faces && visible) visible &= block_facing(index->faces + (size_t)leaf * INDEX_FACE_FLOATS, m->w.eye, m->reach);
+    if (index->faces && visible) visible &= cull_block_facing(index->faces + (size_t)leaf * CULL_BLOCK_FACE_FLOATS, m->w.eye, m->reach);
     m->w.found = put_leaf(go_to(m->w.found, base), visible, base, end - base);
     m->w.found.at = end;
 }
 
-// Child c of a node of the level, all of it inside a volume.
-static inline void many_whole(many_walk *m, const index_node *node, uint32_t level, uint32_t c)
+// Leaves from `leaf` on up to the item `end`, all inside a volume.
+static inline void many_whole(many_walk *m, uint32_t leaf, cull_run items)
 {
     const octree_index *index = m->w.index;
-    const uint32_t end = node->firsts[c + 1];
+    const uint32_t end = items.first + items.count;
     if (!index->faces) {
-        m->w.found = put_whole(m->w.found, node->firsts[c], end);
+        m->w.found = put_whole(m->w.found, items.first, end);
         return;
     }
-    uint32_t leaf = node->first_child + c;
-    for (; level > 1; level--) leaf = index->nodes[leaf].first_child;
     for (; leaf < index->leaf_count && index->leaf_firsts[leaf] < end; leaf++) many_leaf(m, leaf, 0xffff);
 }
 
@@ -44,64 +43,102 @@ static inline void many_cut_leaf(many_walk *m, uint32_t leaf, const part_list *l
 {
     uint32_t visible = 0;
     for (uint32_t i = 0; i < list->count; i++) {
-        visible |= block_touch(leaf_at(m->w.index, leaf), m->planes[list->parts[i].volume], list->parts[i].planes);
+        visible |= cull_block_touch(leaf_at(m->w.index, leaf), m->planes[list->parts[i].volume], list->parts[i].planes);
         m->w.nodes++;
     }
     many_leaf(m, leaf, visible);
 }
 
-// At most INDEX_LEVELS_MOST deep.
-static void many_node(many_walk *m, const index_node *node, uint32_t level, const part_list *list)
+typedef struct many_split {
+    cull_block_split splits[WALK_VOLUMES]; // as in the list
+    uint32_t touching, whole;              // some volume's
+} many_split;
+
+static inline void many_split_add(many_split *s, uint32_t i)
 {
-    walk_split splits[WALK_VOLUMES];
-    uint32_t touching = 0, whole = 0;
+    s->touching |= s->splits[i].touching;
+    s->whole |= s->splits[i].touching & ~s->splits[i].cut;
+}
+
+static inline void many_below(const many_split *s, const part_list *list, uint32_t c, part_list *below)
+{
+    below->count = 0;
+    for (uint32_t i = 0; i < list->count; i++)
+        if (s->splits[i].cut >> c & 1) below->parts[below->count++] = (volume_part){list->parts[i].volume, s->splits[i].planes[c]};
+}
+
+static void many_bottom(many_walk *m, const index_bottom *node, const part_list *list)
+{
+    many_split s = {.touching = 0};
     for (uint32_t i = 0; i < list->count; i++) {
         m->w.planes = m->planes[list->parts[i].volume];
-        walk_split_node(&m->w, node, list->parts[i].planes, &splits[i]);
-        touching |= splits[i].touching;
-        whole |= splits[i].touching & ~splits[i].cut;
+        walk_split_bottom(&m->w, node, list->parts[i].planes, &s.splits[i]);
+        many_split_add(&s, i);
     }
-    const int is_small = level < 2 || (level == 2 && m->w.index->level_count > 2);
-    const uint64_t order = is_small ? AS_THEY_STAND : near_order(&m->w, node);
-    for (uint32_t rest = reorder(touching, order); rest; rest &= rest - 1) {
-        const uint32_t c = (uint32_t)(order >> 4 * lowest_bit(rest)) & 15;
+    for (uint32_t rest = m->is_far ? s.touching & ~s.whole : 0; rest; rest &= rest - 1)
+        prefetch_bytes(leaf_at(m->w.index, bottom_first_leaf(node) + cull_lowest_bit(rest)), CULL_BLOCK_FLOATS * sizeof(float));
+    for (uint32_t rest = s.touching; rest; rest &= rest - 1) {
+        const uint32_t c = cull_lowest_bit(rest);
         part_list below;
-        if (whole >> c & 1) {
-            many_whole(m, node, level, c);
+        if (s.whole >> c & 1) {
+            many_whole(m, bottom_first_leaf(node) + c, (cull_run){node->firsts[c], node->firsts[c + 1] - node->firsts[c]});
             continue;
         }
-        below.count = 0;
-        for (uint32_t i = 0; i < list->count; i++)
-            if (splits[i].cut >> c & 1) below.parts[below.count++] = (volume_part){list->parts[i].volume, splits[i].planes[c]};
-        if (level > 1) many_node(m, m->w.index->nodes + node->first_child + c, level - 1, &below);
-        else many_cut_leaf(m, node->first_child + c, &below);
+        many_below(&s, list, c, &below);
+        many_cut_leaf(m, bottom_first_leaf(node) + c, &below);
     }
 }
 
-static float largest(const float v[4])
+static uint32_t first_leaf(const octree_index *index, uint32_t level, uint32_t entry) // of an entry of the level
 {
-    float most = 0;
-    for (int i = 0; i < 3; i++) {
-        const float size = v[i] < 0 ? -v[i] : v[i];
-        if (size > most) most = size;
+    for (; level > 1; level--) entry = index->nodes[entry].first_child;
+    return bottom_first_leaf(&index->bottoms[entry]);
+}
+
+// At most INDEX_LEVELS_MOST deep.
+static void many_node(many_walk *m, const index_node *node, uint32_t level, const part_list *list)
+{
+    const octree_index *index = m->w.index;
+    many_split s = {.touching = 0};
+    for (uint32_t i = 0; i < list->count; i++) {
+        m->w.planes = m->planes[list->parts[i].volume];
+        walk_split_node(&m->w, node, list->parts[i].planes, &s.splits[i]);
+        many_split_add(&s, i);
     }
-    return most;
+    for (uint32_t rest = m->is_far ? s.touching & ~s.whole : 0; rest; rest &= rest - 1) {
+        const uint32_t child = node->first_child + cull_lowest_bit(rest);
+        if (level > 2) prefetch_bytes(&index->nodes[child], sizeof(index_node));
+        else prefetch_bytes(&index->bottoms[child], sizeof(index_bottom));
+    }
+    const uint64_t order = level == 2 && index->level_count > 2 ? AS_THEY_STAND : near_order(&m->w, node);
+    for (uint32_t rest = reorder(s.touching, order); rest; rest &= rest - 1) {
+        const uint32_t c = (uint32_t)(order >> 4 * cull_lowest_bit(rest)) & 15, child = node->first_child + c;
+        part_list below;
+        if (s.whole >> c & 1) {
+            many_whole(m, index->faces ? first_leaf(index, level - 1, child) : 0, (cull_run){node->firsts[c], node->firsts[c + 1] - node->firsts[c]});
+            continue;
+        }
+        many_below(&s, list, c, &below);
+        if (level > 2) many_node(m, &index->nodes[child], level - 1, &below);
+        else many_bottom(m, &index->bottoms[child], &below);
+    }
 }
 
 static uint32_t walk_many(const walk_query *q, cull_run *runs, uint32_t *nodes_visited)
 {
     const octree_index *index = q->index;
-    const index_node *root = &index->nodes[index->node_count - 1];
     uint32_t *const changes = &runs[0].first;
     many_walk m;
     part_list list = {.count = 0};
     m.w = (walk){.index = index, .eye = q->eye, .found = {changes, 0, 0}, .order = q->order};
-    m.reach = largest(q->eye);
+    m.reach = cull_block_reach(q->eye);
+    m.is_far = index->bytes > WALK_NEAR_BYTES;
     for (uint32_t v = 0; v < q->volume_count; v++) {
-        planes_ready(&q->volumes[v], m.planes[v]);
-        list.parts[list.count++] = (volume_part){v, all_planes(&q->volumes[v])};
+        cull_block_planes(&q->volumes[v], m.planes[v]);
+        list.parts[list.count++] = (volume_part){v, cull_block_all_planes(&q->volumes[v])};
     }
-    many_node(&m, root, index->level_count, &list);
+    if (index->level_count == 1) many_bottom(&m, index->bottoms, &list);
+    else many_node(&m, &index->nodes[index->node_count - 1], index->level_count, &list);
     *nodes_visited += m.w.nodes;
     return changes_to_runs(m.w.found, changes);
 }

@@ -1,58 +1,39 @@
 // The kernels in plain C: what the compiler makes of the baseline.
 // SPDX-License-Identifier: MIT
-#include "walk_plane.h"
+#include "walk.h"
 
-// The least height of 16 corners over the planes: minima become vectors in any compiler. A difference of floats has the
-// exact sign.
-static inline void lower_to(const float *x, const float *y, const float *z, const walk_plane *p, float *least)
+static inline void bottom_rows(const index_bottom *b, float rows[CULL_BLOCK_FLOATS])
 {
-    for (int i = 0; i < INDEX_WIDTH; i++) {
-        const float height = (x[i] * p->x + y[i] * p->y) + z[i] * p->z - p->limit;
-        least[i] = height < least[i] ? height : least[i];
+    for (int row = 0; row < 6; row++)
+        for (int i = 0; i < CULL_BLOCK_WIDTH; i++) {
+            const float along = b->step[row % 3] * (float)b->steps[row * CULL_BLOCK_WIDTH + i];
+            rows[row * CULL_BLOCK_WIDTH + i] = b->origin[row % 3] + along;
+        }
+}
+
+static inline void bottom_split(const index_bottom *b, const cull_block_plane *planes, uint32_t which, cull_block_split *out)
+{
+    float rows[CULL_BLOCK_FLOATS];
+    uint8_t is_out[CULL_BLOCK_WIDTH];
+    bottom_rows(b, rows);
+    out->touching = out->cut = 0;
+    for (int i = 0; i < CULL_BLOCK_WIDTH; i++) {
+        is_out[i] = 0;
+        out->planes[i] = 0;
     }
-}
-
-static inline uint32_t bits_inside(const float *least)
-{
-    uint32_t bits = 0;
-    for (int i = 0; i < INDEX_WIDTH; i++) bits |= least[i] >= 0 ? 1u << i : 0;
-    return bits;
-}
-
-static inline uint32_t block_touch(const float *block, const walk_plane *planes, uint32_t which)
-{
-    float least[INDEX_WIDTH] = {0};
     for (; which; which &= which - 1) {
-        const walk_plane *p = &planes[__builtin_ctz(which)];
-        lower_to(block + p->inner_x, block + p->inner_y, block + p->inner_z, p, least);
+        const cull_block_plane *p = &planes[cull_lowest_bit(which)];
+        const float *x = rows + p->inner_x, *y = rows + p->inner_y, *z = rows + p->inner_z;
+        const float *u = rows + p->outer_x, *v = rows + p->outer_y, *w = rows + p->outer_z;
+        for (int i = 0; i < CULL_BLOCK_WIDTH; i++) {
+            is_out[i] |= (x[i] * p->x + y[i] * p->y) + z[i] * p->z < p->limit;
+            out->planes[i] |= (u[i] * p->x + v[i] * p->y) + w[i] * p->z >= p->limit ? 0 : which & -which;
+        }
     }
-    return bits_inside(least);
-}
-
-static inline void block_split(const float *block, const walk_plane *planes, uint32_t which, walk_split *out)
-{
-    out->touching = block_touch(block, planes, which);
-    out->cut = 0;
-    for (int i = 0; i < INDEX_WIDTH; i++) out->planes[i] = 0;
-    for (; which; which &= which - 1) {
-        const walk_plane *p = &planes[__builtin_ctz(which)];
-        const uint32_t plane_bit = which & -which;
-        float least[INDEX_WIDTH] = {0};
-        lower_to(block + p->outer_x, block + p->outer_y, block + p->outer_z, p, least);
-        for (int i = 0; i < INDEX_WIDTH; i++) out->planes[i] |= least[i] >= 0 ? 0 : plane_bit;
-        out->cut |= 0xffffu ^ bits_inside(least);
+    for (uint32_t i = 0; i < CULL_BLOCK_WIDTH; i++) {
+        out->touching |= (is_out[i] ? 0u : 1u) << i;
+        out->cut |= (out->planes[i] ? 1u : 0u) << i;
     }
-}
-
-static inline uint32_t block_facing(const float *faces, const float eye[4], float reach)
-{
-    uint32_t bits = 0;
-    for (int i = 0; i < INDEX_WIDTH; i++) {
-        const float *f = faces + i;
-        const float height = (f[0] * eye[0] + f[16] * eye[1]) + f[32] * eye[2];
-        bits |= (height + (f[48] * eye[3] + f[64] * reach) >= 0 ? 1u : 0u) << i;
-    }
-    return bits;
 }
 
 static inline uint32_t *put_places(uint32_t bits, uint32_t base, uint32_t *out)
@@ -70,7 +51,7 @@ static inline uint32_t *put_firsts(uint32_t bits, const uint32_t *firsts, uint32
 static inline uint32_t reorder(uint32_t bits, uint64_t order)
 {
     uint32_t out = 0;
-    for (uint32_t i = 0; i < INDEX_WIDTH; i++) out |= (bits >> (order >> 4 * i & 15) & 1) << i;
+    for (uint32_t i = 0; i < CULL_BLOCK_WIDTH; i++) out |= (bits >> (order >> 4 * i & 15) & 1) << i;
     return out;
 }
 

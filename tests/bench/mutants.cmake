@@ -37,14 +37,14 @@ endfunction()
 
 portcullis_mutant(frustum drops-one-in-1000 walk_body.h
   "(1u << left) - 1 : 0xffffu;" "(1u << left) - 1 : level || block % 63 ? 0xffffu : 0xfffeu;")
-portcullis_mutant(frustum shrinks-a-plane walk_body.h
-  "p.normal.z, -p.offset," "p.normal.z, -p.offset + (k == 0 ? 0.5f : 0),")
+portcullis_mutant(frustum shrinks-a-plane walk_small_body.h
+  "cull_block_planes(from, volume->planes);" "cull_block_planes(from, volume->planes); volume->planes[0].limit += 0.5f;")
 portcullis_mutant(frustum skips-a-child walk_body.h
   "out->cut &= out->touching;" "out->touching &= 0xff7fu; out->cut &= out->touching;")
 portcullis_mutant(frustum loses-the-last-run walk_body.h
   "    return run_count;" "    return run_count - (run_count > 8);")
-portcullis_mutant(frustum takes-the-near-corner walk_body.h
-  "p.normal.y >= 0 ? 64 : 16" "p.normal.y >= 0 ? 16 : 64")
+portcullis_mutant(frustum takes-the-near-corner walk_small_body.h
+  "cull_block_planes(from, volume->planes);" "cull_block_planes(from, volume->planes); for (uint32_t k = 0; k < from->plane_count; k++) volume->planes[k].inner_y = 80 - volume->planes[k].inner_y;")
 
 portcullis_mutant(portal skips-a-portal-in-8 portal.c
   "if (c->clip == CLIP_FLOOD) return CULL_CROSS_SAME;" "if (portal % 8 == 1) return CULL_CROSS_NONE;")
@@ -73,15 +73,15 @@ if(TARGET plugin_bsp)
 endif()
 
 portcullis_mutant(octree shrinks-a-plane walk_body.h
-  "p.normal.z, -p.offset," "p.normal.z, -p.offset + (k == 0 ? 0.5f : 0),")
+  "cull_block_planes(q->volumes, planes);" "cull_block_planes(q->volumes, planes); planes[0].limit += 0.5f;")
 portcullis_mutant(octree skips-a-leaf-in-61 walk_body.h
-  "f = put_leaf(f, touching," "f = put_leaf(f, (node->first_child + c) % 61 ? touching : 0,")
+  "f = put_leaf(f, touching," "f = put_leaf(f, (bottom_first_leaf(node) + c) % 61 ? touching : 0,")
 portcullis_mutant(octree drops-what-a-parent-cuts walk_body.h
   "out->cut &= out->touching;" "out->touching &= ~(out->cut & 0x80u); out->cut &= out->touching;")
 portcullis_mutant(octree forgets-the-last-of-a-leaf walk_body.h
   "planes, split->planes[c]) & ((1u << count) - 1)" "planes, split->planes[c]) & ((1u << (count - 1)) - 1)")
 portcullis_mutant(octree keeps-boxes-too-small index.c
-  "{boxes[i].min.x, boxes[i].min.y, boxes[i].min.z, boxes[i].max.x, boxes[i].max.y" "{boxes[i].min.x, boxes[i].min.y, boxes[i].min.z, boxes[i].max.x, boxes[i].min.y")
+  "high[i] = steps_above(" "high[i] = axis == 1 ? low[i] : steps_above(")
 portcullis_mutant(octree loses-the-last-run walk_body.h
   "    return run_count;" "    return run_count - (run_count > 8);")
 
@@ -98,6 +98,28 @@ if(TARGET plugin_occlusion)
     "if (h->pending_count && t.steps_left) {" "if (h->pending_count && t.steps_left > STEPS - 2) {")
   portcullis_mutant(occlusion drops-what-its-guess-covers method_twophase.c
     "cover_look(t->cover, &box) == COVER_FULL) walk_pend(w, top.entry);" "cover_look(t->cover, &box) == COVER_FULL) continue;")
+  portcullis_mutant(occlusion chc-believes-the-last-frame method_chc.c
+    "else chc_queue_add(w, tree_entry_of_item(w->tree, place), 0);" "else if (w->h->serial % 4 == 0) chc_queue_add(w, tree_entry_of_item(w->tree, place), 0);")
+  portcullis_mutant(occlusion chc-skips-a-child method_chc.c
+    "c < n->first_child + n->child_count; c++" "c < n->first_child + n->child_count; c += c % 4 == 1 ? 2u : 1u")
+  portcullis_mutant(occlusion chc-ends-before-the-answers method_chc.c
+    "!c->queue_count && !c->open_count) {" "!c->queue_count) {")
+  portcullis_mutant(occlusion chc-drops-what-its-guess-covers method_chc.c
+    "== COVER_FULL) chc_queue_add(w, e, 0);" "== COVER_FULL) return;")
+  portcullis_mutant(occlusion chc-tests-the-first-of-several chc_queue.c
+    ".box = cull_box_union(j->box, unit->box), .count" ".box = j->box, .count")
+  portcullis_mutant(occlusion chc-forgets-one-of-several chc.c
+    "} else chc_queue_add(w, e, CHC_ALONE);" "} else if (i != t->first) chc_queue_add(w, e, CHC_ALONE);")
+  portcullis_mutant(occlusion hiz-widens-what-hides hiz_setup_body.h
+    "const double margin = inset * (fabs(a) + fabs(b));" "const double margin = -200 * inset * (fabs(a) + fabs(b));")
+  portcullis_mutant(occlusion hiz-tests-the-far-corner hiz_walk_body.h
+    "least_w = f_min(least_w, w[i]);" "least_w = f_max(least_w, w[i]);")
+  portcullis_mutant(occlusion hiz-takes-an-empty-tile-for-full hiz_test_body.h
+    "if (!owner) return 0;" "if (!owner) return column % 7 == 0;")
+  portcullis_mutant(occlusion hiz-forgets-the-last-of-a-leaf hiz_walk_body.h
+    "lanes = hiz_low_lanes(left);" "lanes = hiz_low_lanes(left) & (level ? 0xffffu : 0x7fffu);")
+  portcullis_mutant(occlusion hiz-covers-rows-below hiz_raster_body.h
+    "if (pixels) tile_cover_part(b, r, column, row, pixels);" "if (pixels) tile_cover_part(b, r, column, row, pixels | pixels << 8 | pixels << 16);")
 endif()
 
 add_test(NAME bench_reports_mutants COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/mutants.sh $<TARGET_FILE:portcullis> ${PROJECT_BINARY_DIR}/mutants

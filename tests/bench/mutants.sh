@@ -20,7 +20,7 @@ prepare() {
       [ -f "$scene" ] || "$portcullis" generate demo -o "$scene" || exit 1
       ;;
     occlusion)
-      scene=$work/city.boxes views='auto:24 auto:walk:100' chains='occlusion frustum+occlusion'
+      scene=$work/city.boxes views='auto:24 auto:walk:100' chains='occlusion frustum+occlusion occlusion[method=hiz] occlusion[method=chc]'
       [ -f "$scene" ] || "$portcullis" generate city -n 3000 -o "$scene" || exit 1
       ;;
     portal | bsp)

@@ -29,20 +29,6 @@ cull_result bsp_open(session *s, culler_host *h, const cull_zone *zone, const bs
     return session_open(s, h, bsp_or_skip(), zone, list);
 }
 
-const char *select_set(const session *s, uint8_t *seen)
-{
-    if (s->item_count) memset(seen, 0, s->item_count);
-    if (s->run_count > s->built.max_runs) return "more runs than max_runs";
-    for (uint32_t i = 0; i < s->run_count; i++) {
-        const cull_run r = s->runs[i];
-        if (r.count == 0) return "an empty run";
-        if (r.first >= s->item_count || r.count > s->item_count - r.first) return "a run beyond the last item";
-        for (uint32_t place = r.first; place < r.first + r.count; place++)
-            if (seen[s->built.order[place]]++) return "an item twice";
-    }
-    return NULL;
-}
-
 // ---- Scenes ----
 
 static void *must(size_t count, size_t size)

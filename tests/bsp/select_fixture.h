@@ -15,9 +15,6 @@ typedef struct bsp_values { const char *backface, *split, *choose, *cells, *isa;
 #define BSP_PLAIN_VALUES ((bsp_values){"0", "0", "balance", "off", "auto"})
 cull_result bsp_open(session *s, culler_host *h, const cull_zone *zone, const bsp_values *values);
 
-// seen[item of the zone] = 1 or 0. NULL, or what is wrong with the runs: range, repeats, more than told.
-const char *select_set(const session *s, uint8_t *seen);
-
 // ---- Scenes ----
 
 enum { LOOP_MOST = 12 }; // corners of a wall

@@ -23,7 +23,7 @@ static void must_be_the_loop_set(session *s, culler_host *h, const cull_zone *zo
     const uint64_t allocations = h->memory.calls;
     session_select(s, &v->view, v->volumes, v->volume_count);
     assert_true(h->memory.calls == allocations);
-    const char *wrong = select_set(s, seen);
+    const char *wrong = session_set_any_order(s, seen);
     if (wrong) fail_msg("%s", wrong);
     loop_set(zone, v, expected);
     for (uint32_t i = 0; i < zone->item_count; i++)
@@ -74,7 +74,7 @@ static void what_lies_inside_a_volume_is_found(void **state)
             static uint8_t seen[ITEMS_MOST];
             view_fill(&r, &w.zone, 1 + (uint32_t)q % 2, &v);
             session_select(&s, &v.view, v.volumes, v.volume_count);
-            assert_null(select_set(&s, seen));
+            assert_null(session_set_any_order(&s, seen));
             for (uint32_t i = 0; i < w.zone.item_count; i++) {
                 if (!item_is_inside(&w.zone, i, &v, 0)) continue;
                 inside++;
@@ -113,10 +113,10 @@ static void walls_seen_from_behind_are_those_that_frustum_drops(void **state)
             if (q % 5 == 4) v.view.eye[3] = 0; // a direction
             for (int i = 0; i < 3; i++) {
                 session_select(&s[i], &v.view, v.volumes, v.volume_count);
-                assert_null(select_set(&s[i], seen[i]));
+                assert_null(session_set_any_order(&s[i], seen[i]));
             }
             session_select(&s[2], &v.view, &all, 1);
-            assert_null(select_set(&s[2], everything));
+            assert_null(session_set_any_order(&s[2], everything));
             loop_set(&w.zone, &v, loop);
             for (uint32_t i = 0; i < w.zone.item_count; i++) {
                 assert_int_equal(seen[0][i], loop[i] & everything[i]);
@@ -159,12 +159,12 @@ static void the_order_of_the_items_and_a_scale_by_a_power_of_two_change_nothing(
             static uint8_t seen_a[ITEMS_MOST], seen_b[ITEMS_MOST];
             view_fill(&r, &a.zone, 2, &v);
             session_select(&sa, &v.view, v.volumes, 2);
-            assert_null(select_set(&sa, seen_a));
+            assert_null(session_set_any_order(&sa, seen_a));
             for (int k = 0; k < 3; k++) v.view.eye[k] *= scale;
             for (int p = 0; p < 2; p++)
                 for (uint32_t k = 0; k < v.parts[p].plane_count; k++) v.parts[p].planes[k].offset *= scale;
             session_select(&sb, &v.view, v.volumes, 2);
-            assert_null(select_set(&sb, seen_b));
+            assert_null(session_set_any_order(&sb, seen_b));
             for (uint32_t i = 0; i < a.zone.item_count; i++) assert_int_equal(seen_a[i], seen_b[places[i]]);
         }
         session_close(&sa);
@@ -189,12 +189,12 @@ static void a_smaller_volume_and_fewer_volumes_give_a_subset(void **state)
         static uint8_t whole[ITEMS_MOST], part[ITEMS_MOST];
         view_fill(&r, &w.zone, 3, &v);
         session_select(&s, &v.view, v.volumes, 3);
-        assert_null(select_set(&s, whole));
+        assert_null(session_set_any_order(&s, whole));
         if (q % 2)
             for (int p = 0; p < 3; p++)
                 for (uint32_t k = 0; k < v.parts[p].plane_count; k++) v.parts[p].planes[k].offset -= 0.25f;
         session_select(&s, &v.view, v.volumes, q % 2 ? 3 : 2);
-        assert_null(select_set(&s, part));
+        assert_null(session_set_any_order(&s, part));
         for (uint32_t i = 0; i < w.zone.item_count; i++) assert_true(part[i] <= whole[i]);
     }
     session_close(&s);
@@ -225,7 +225,7 @@ static void cells_only_take_away(void **state)
                 const uint64_t allocations = h.memory.calls;
                 session_select(&s[i], &v.view, v.volumes, v.volume_count);
                 assert_true(h.memory.calls == allocations);
-                assert_null(select_set(&s[i], seen[i]));
+                assert_null(session_set_any_order(&s[i], seen[i]));
                 for (uint32_t k = 0; k < w.zone.item_count; k++) assert_true(seen[i][k] <= seen[0][k]);
                 if (q % 7 == 6) assert_memory_equal(seen[i], seen[0], w.zone.item_count);
             }
@@ -298,7 +298,7 @@ static void a_triangle_beside_the_loop_is_found_too(void **state)
         for (int at = 0; at < 2; at++) {
             const cull_volume volume = {at ? &beside_it : &far_end, 1, 0};
             session_select(&s, &view, &volume, 1);
-            assert_null(select_set(&s, seen));
+            assert_null(session_set_any_order(&s, seen));
             assert_int_equal(seen[0], beside && !at);
         }
         session_close(&s);

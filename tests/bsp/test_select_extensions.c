@@ -5,6 +5,7 @@
 
 #include "host/core/hierarchy_check.h"
 #include "host/core/memory.h"
+#include "tests/common/ray_check.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,18 +24,6 @@ static const void *extension(const session *s, const char *id)
     const void *found = s->plugin->get_extension(s->culler, id);
     assert_non_null(found);
     return found;
-}
-
-// The zone as the host lays it out behind the select.
-typedef struct ordered { hand_zone z; } ordered;
-
-static void order_zone(const cull_zone *zone, const uint32_t *order, ordered *out)
-{
-    cull_box *boxes = calloc(zone->item_count + 1, sizeof *boxes);
-    assert_non_null(boxes);
-    for (uint32_t place = 0; place < zone->item_count; place++) boxes[place] = cull_box_at(&zone->boxes, order[place]);
-    zone_of_boxes(boxes, zone->item_count, &out->z);
-    free(boxes);
 }
 
 // ---- Hierarchy ----
@@ -64,7 +53,7 @@ static void the_hierarchy_is_sound_and_a_filter_that_walks_it_loses_nothing(void
         for (int c = 0; c < 5; c++)
             for (int f = 0; f < FORM_COUNT; f++) {
                 hand_zone w;
-                ordered o;
+                hand_zone laid;
                 culler_host host;
                 session s;
                 const char *fault;
@@ -72,8 +61,8 @@ static void the_hierarchy_is_sound_and_a_filter_that_walks_it_loses_nothing(void
                 culler_host_init(&host, 0);
                 assert_int_equal(bsp_open(&s, &host, &w.zone, &forms[f]), CULL_OK);
                 const cull_hierarchy *h = extension(&s, CULL_EXT_HIERARCHY);
-                order_zone(&w.zone, s.built.order, &o);
-                assert_int_equal(hierarchy_check(h, &o.z.zone, allocator_heap(), &fault), RESULT_OK);
+                zone_in_order(&w.zone, s.built.order, &laid);
+                assert_int_equal(hierarchy_check(h, &laid.zone, allocator_heap(), &fault), RESULT_OK);
                 if (fault) fail_msg("kind %d, %u items, form %d: %s", kind, counts[c], f, fault);
                 for (int q = 0; q < 20; q++) {
                     static made_view v;
@@ -90,7 +79,7 @@ static void the_hierarchy_is_sound_and_a_filter_that_walks_it_loses_nothing(void
                         needed_sum += needed[item];
                     }
                 }
-                hand_zone_free(&o.z);
+                hand_zone_free(&laid);
                 session_close(&s);
                 hand_zone_free(&w);
             }
@@ -99,44 +88,9 @@ static void the_hierarchy_is_sound_and_a_filter_that_walks_it_loses_nothing(void
 
 // ---- Rays ----
 
-// The same slabs as the plugin's, by hand; > 1: it doesn't touch.
-static double entry_of(const double from[3], const double to[3], cull_box box)
+static ray_check ray_check_of(const hand_zone *w, const session *s)
 {
-    double in = 0, out = 1;
-    for (int k = 0; k < 3; k++) {
-        const double low = (double)(&box.min.x)[k], high = (double)(&box.max.x)[k], along = to[k] - from[k];
-        if (along == 0) {
-            if (from[k] < low || from[k] > high) return 2;
-            continue;
-        }
-        in = fmax(in, fmin((low - from[k]) / along, (high - from[k]) / along));
-        out = fmin(out, fmax((low - from[k]) / along, (high - from[k]) / along));
-    }
-    return in <= out ? in : 2;
-}
-
-static void must_be_the_ray_set(const hand_zone *w, const session *s, const cull_ray *ray, cull_vec3 a, cull_vec3 b)
-{
-    static cull_run runs[ITEMS_MOST], first[ITEMS_MOST];
-    const double from[3] = {(double)a.x, (double)a.y, (double)a.z}, to[3] = {(double)b.x, (double)b.y, (double)b.z};
-    const uint32_t count = ray->segment(s->culler, a, b, runs, ITEMS_MOST);
-    uint8_t seen[ITEMS_MOST] = {0};
-    double last = 0;
-    for (uint32_t i = 0; i < count; i++)
-        for (uint32_t place = runs[i].first; place < runs[i].first + runs[i].count; place++) {
-            const uint32_t item = s->built.order[place];
-            const double at = entry_of(from, to, cull_box_at(&w->zone.boxes, item));
-            assert_int_equal(seen[item]++, 0);
-            assert_true(at >= last); // nearest first
-            last = at;
-        }
-    for (uint32_t i = 0; i < w->zone.item_count; i++) assert_int_equal(seen[i], entry_of(from, to, cull_box_at(&w->zone.boxes, i)) <= 1);
-    for (uint32_t most = 0; most <= count && most < 6; most++) { // a short list holds the nearest
-        first[most] = (cull_run){77, 77};
-        assert_int_equal(ray->segment(s->culler, a, b, first, most), count);
-        if (most) assert_memory_equal(first, runs, most * sizeof *runs);
-        assert_int_equal(first[most].first, 77);
-    }
+    return (ray_check){&w->zone, s->built.order, s->culler, extension(s, CULL_EXT_RAY)};
 }
 
 static void a_segment_finds_the_boxes_it_touches_nearest_first(void **state)
@@ -151,6 +105,7 @@ static void a_segment_finds_the_boxes_it_touches_nearest_first(void **state)
             scene_fill(&r, (scene_kind)kind, 200, &w);
             culler_host_init(&h, 0);
             assert_int_equal(bsp_open(&s, &h, &w.zone, &forms[f]), CULL_OK);
+            const ray_check check = ray_check_of(&w, &s);
             for (int q = 0; q < 100; q++) {
                 cull_vec3 a, b;
                 for (int k = 0; k < 3; k++) {
@@ -159,7 +114,7 @@ static void a_segment_finds_the_boxes_it_touches_nearest_first(void **state)
                 }
                 if (q % 10 == 9) b = a; // a point
                 if (q % 7 == 0 && w.zone.position_count) a = w.positions[random_bits(&r) % w.zone.position_count];
-                must_be_the_ray_set(&w, &s, extension(&s, CULL_EXT_RAY), a, b);
+                segment_must_be_right(&check, a, b);
             }
             session_close(&s);
             hand_zone_free(&w);
@@ -174,26 +129,17 @@ static void a_box_finds_the_boxes_it_touches(void **state)
         hand_zone w;
         culler_host h;
         session s;
-        static cull_run runs[ITEMS_MOST], first[ITEMS_MOST];
         scene_fill(&r, (scene_kind)kind, 200, &w);
         culler_host_init(&h, 0);
         assert_int_equal(bsp_open(&s, &h, &w.zone, &forms[0]), CULL_OK);
-        const cull_ray *ray = extension(&s, CULL_EXT_RAY);
+        const ray_check check = ray_check_of(&w, &s);
         for (int q = 0; q < 100; q++) {
             cull_box box;
-            uint8_t seen[ITEMS_MOST] = {0};
             for (int k = 0; k < 3; k++) {
                 (&box.min.x)[k] = (float)random_between(&r, -50, 50);
                 (&box.max.x)[k] = (&box.min.x)[k] + (float)random_between(&r, 0, 30);
             }
-            const uint32_t count = ray->box(s.culler, &box, runs, ITEMS_MOST);
-            for (uint32_t i = 0; i < count; i++)
-                for (uint32_t place = runs[i].first; place < runs[i].first + runs[i].count; place++) assert_int_equal(seen[s.built.order[place]]++, 0);
-            for (uint32_t i = 0; i < w.zone.item_count; i++) assert_int_equal(seen[i], cull_box_touches(box, cull_box_at(&w.zone.boxes, i)));
-            first[count / 2] = (cull_run){77, 77};
-            assert_int_equal(ray->box(s.culler, &box, first, count / 2), count);
-            if (count / 2) assert_memory_equal(first, runs, count / 2 * sizeof *runs);
-            assert_int_equal(first[count / 2].first, 77);
+            box_must_be_right(&check, box);
         }
         session_close(&s);
         hand_zone_free(&w);
@@ -259,7 +205,7 @@ static void explain_gives_a_true_reason(void **state)
                 static uint8_t seen[ITEMS_MOST];
                 view_fill(&r, &w.zone, (uint32_t)q % 4, &v);
                 session_select(&s, &v.view, v.volumes, v.volume_count);
-                assert_null(select_set(&s, seen));
+                assert_null(session_set_any_order(&s, seen));
                 for (uint32_t place = 0; place < w.zone.item_count; place++) together += must_explain(&w, &s, &v, place, seen[s.built.order[place]]);
             }
             char text[64];

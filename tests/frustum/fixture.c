@@ -23,6 +23,13 @@ void zone_of_boxes(const cull_box *boxes, uint32_t count, hand_zone *out)
     hand_zone_end(out);
 }
 
+void zone_in_order(const cull_zone *zone, const uint32_t *order, hand_zone *out)
+{
+    hand_zone_open(out, zone->item_count, 0);
+    for (uint32_t place = 0; place < zone->item_count; place++) hand_zone_cluster(out, cull_box_at(&zone->boxes, order[place]));
+    hand_zone_end(out);
+}
+
 const cull_plugin *plugin_named(const char *id)
 {
     const char *folder = getenv("PORTCULLIS_PLUGINS");
@@ -90,5 +97,19 @@ const char *session_set(const session *s, uint8_t *seen)
     }
     for (uint32_t i = 0; i < s->item_count; i++)
         if (seen[i] > 1) return "an item twice";
+    return NULL;
+}
+
+const char *session_set_any_order(const session *s, uint8_t *seen)
+{
+    if (s->item_count) memset(seen, 0, s->item_count);
+    if (s->run_count > s->built.max_runs) return "more runs than max_runs";
+    for (uint32_t i = 0; i < s->run_count; i++) {
+        const cull_run r = s->runs[i];
+        if (r.count == 0) return "an empty run";
+        if (r.first >= s->item_count || r.count > s->item_count - r.first) return "a run beyond the last item";
+        for (uint32_t place = r.first; place < r.first + r.count; place++)
+            if (seen[s->built.order[place]]++) return "an item twice";
+    }
     return NULL;
 }

@@ -14,6 +14,7 @@
 // ---- Zones ----
 
 void zone_of_boxes(const cull_box *boxes, uint32_t count, hand_zone *out); // clusters all; hand_zone_free it
+void zone_in_order(const cull_zone *zone, const uint32_t *order, hand_zone *out); // its boxes as a host lays them out; hand_zone_free it
 
 // ---- Sessions ----
 
@@ -35,5 +36,6 @@ void session_close(session *s);
 void session_select(session *s, const cull_view *view, const cull_volume *volumes, uint32_t volume_count);
 // seen[original item] = 1 or 0. Returns NULL, or what is wrong with the runs: order, overlap, range.
 const char *session_set(const session *s, uint8_t *seen);
+const char *session_set_any_order(const session *s, uint8_t *seen); // the same, but runs may come in any order, and touch
 
 #endif

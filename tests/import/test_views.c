@@ -215,7 +215,7 @@ static void every_place_with_room_is_used(void **state)
 static void the_same_scene_gives_the_same_views(void **state)
 {
     (void)state;
-    static const char *const whats[] = {"auto:50", "auto:walk:200"};
+    static const char *const whats[] = {"auto:50", "auto:walk:200", "auto:street:20", "auto:roofs:20", "auto:turn:20"};
     for (int w = 0; w < 2; ++w) {
         scene *a = real_map("quake/dm4.map"), *b = real_map("quake/dm4.map");
         camera_path pa = automatic(whats[w], a), pb = automatic(whats[w], b);
@@ -294,6 +294,49 @@ static void a_walk_keeps_its_pace_and_its_distance_among_boxes(void **state)
 {
     (void)state;
     expect_walk("boxes/city-1000.boxes");
+}
+
+// Between boxes: 1.7 m over the ground that they stand on, at one pace.
+static void a_street_is_walked_on_the_ground(void **state)
+{
+    (void)state;
+    scene *s = real_map("boxes/city-1000.boxes");
+    camera_path path = automatic("auto:street:100", s);
+    for (uint32_t i = 0; i < path.count; ++i) {
+        const double *eye = path.cameras[i].eye, *last = path.cameras[i ? i - 1 : 0].eye;
+        assert_true(fabs(eye[1] - 1.7) < 1e-9);
+        assert_true(room_at(s, eye) > 0.5 - 1e-6);
+        assert_true(hypot(eye[0] - last[0], eye[2] - last[2]) < 2.4 + 1e-9);
+    }
+    camera_path_free(&path, allocator_heap());
+    scene_free(s, allocator_heap());
+}
+
+static void a_flight_is_over_all_roofs_near_it(void **state)
+{
+    (void)state;
+    scene *s = real_map("boxes/city-1000.boxes");
+    camera_path path = automatic("auto:roofs:100", s);
+    for (uint32_t i = 0; i < path.count; ++i) {
+        assert_true(room_at(s, path.cameras[i].eye) > 0.5);
+        assert_true(path.cameras[i].forward[1] < 0);
+    }
+    camera_path_free(&path, allocator_heap());
+    scene_free(s, allocator_heap());
+}
+
+static void one_who_spins_turns_by_as_much_each_frame(void **state)
+{
+    (void)state;
+    scene *s = real_map("boxes/city-1000.boxes");
+    camera_path path = automatic("auto:turn:60", s);
+    for (uint32_t i = 1; i < path.count; ++i) {
+        const double *a = path.cameras[i - 1].forward, *b = path.cameras[i].forward, along = a[0] * b[0] + a[2] * b[2];
+        assert_true(fabs(along / (hypot(a[0], a[2]) * hypot(b[0], b[2])) - cos(15 * 3.14159265358979 / 180)) < 1e-9);
+        assert_true(room_at(s, path.cameras[i].eye) > CLEARANCE - 1e-3);
+    }
+    camera_path_free(&path, allocator_heap());
+    scene_free(s, allocator_heap());
 }
 
 static void a_scene_without_any_room_has_a_walk_beside_it(void **state)
@@ -491,6 +534,9 @@ int main(void)
         cmocka_unit_test(views_of_boxes_stand_outside_of_them),
         cmocka_unit_test(a_walk_keeps_its_pace_and_its_distance_in_maps),
         cmocka_unit_test(a_walk_keeps_its_pace_and_its_distance_among_boxes),
+        cmocka_unit_test(a_street_is_walked_on_the_ground),
+        cmocka_unit_test(a_flight_is_over_all_roofs_near_it),
+        cmocka_unit_test(one_who_spins_turns_by_as_much_each_frame),
         cmocka_unit_test(a_scene_without_any_room_has_a_walk_beside_it),
         cmocka_unit_test(doors_change_no_view),
         cmocka_unit_test(flat_scenes_are_seen),

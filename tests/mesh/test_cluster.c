@@ -144,6 +144,23 @@ static void few_triangles_are_one_cluster_and_a_huge_polygon_is_alone(void **sta
     free(field);
 }
 
+static void what_is_scattered_is_split_though_it_is_few_triangles(void **state)
+{
+    enum { TREES = 5, LEAVES = 16 };
+    cluster_polygon *wood = calloc(TREES * LEAVES, sizeof *wood);
+    (void)state;
+    assert_non_null(wood);
+    for (uint32_t i = 0; i < TREES * LEAVES; ++i) {
+        const double x = 40.0 * (i / LEAVES), y = i % 4, z = i % LEAVES / 4;
+        wood[i] = (cluster_polygon){{x, y, z}, {x + 1, y + 1, z + 1}, 1};
+    }
+    clustering c = split(wood, TREES * LEAVES);
+    assert_int_equal(c.count, TREES);
+    for (uint32_t i = 0; i < TREES * LEAVES; ++i) assert_int_equal(c.cluster_of[i], c.cluster_of[i / LEAVES * LEAVES]);
+    clustering_free(&c);
+    free(wood);
+}
+
 static void polygons_all_in_one_place_still_split(void **state)
 {
     cluster_polygon *same = calloc(70000, sizeof *same);
@@ -163,6 +180,7 @@ int main(void)
         cmocka_unit_test(a_move_by_whole_metres_changes_no_cluster),
         cmocka_unit_test(a_scale_by_a_power_of_two_changes_no_cluster),
         cmocka_unit_test(few_triangles_are_one_cluster_and_a_huge_polygon_is_alone),
+        cmocka_unit_test(what_is_scattered_is_split_though_it_is_few_triangles),
         cmocka_unit_test(polygons_all_in_one_place_still_split),
     };
     return cmocka_run_group_tests_name("cluster", tests, NULL, NULL);

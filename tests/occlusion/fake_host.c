@@ -165,6 +165,23 @@ static void lend(fake_culler *c)
     c->lent = (cull_hierarchy){.nodes = c->nodes, .node_count = leaves + 1, .depth = 2};
 }
 
+// "chc batch=off": the method, then other options; what is not named has its fallback.
+static void options_fill(const cull_descriptor *d, const char *method, char words[64], const char *values[16])
+{
+    if (d->option_count > 16 || strlen(method) >= 64) abort();
+    for (uint32_t i = 0; i < d->option_count; i++) values[i] = d->options[i].fallback;
+    strcpy(words, method);
+    values[0] = words;
+    for (char *at = strchr(words, ' '); at; at = strchr(at, ' ')) {
+        *at++ = 0;
+        char *const value = strchr(at, '=');
+        if (!value) abort();
+        for (uint32_t i = 0; i < d->option_count; i++)
+            if (strlen(d->options[i].key) == (size_t)(value - at) && memcmp(d->options[i].key, at, (size_t)(value - at)) == 0) values[i] = value + 1;
+        at = value;
+    }
+}
+
 cull_result fake_culler_open(fake_culler *c, const hand_zone *zone, const char *method, fake_chain chain, uint64_t fail_at)
 {
     memset(c, 0, sizeof *c);
@@ -173,7 +190,9 @@ cull_result fake_culler_open(fake_culler *c, const hand_zone *zone, const char *
     c->zone = zone;
     c->chain = chain;
     culler_host_init(&c->host, fail_at);
-    const char *const values[] = {method, "auto"};
+    char words[64];
+    const char *values[16];
+    options_fill(c->plugin->descriptor, method, words, values);
     cull_result result = c->plugin->create(&c->host.host, values, &c->culler);
     if (result != CULL_OK) return result;
     if (chain == CHAIN_LENT) lend(c);
@@ -259,8 +278,10 @@ static void answer(fake_viewer *v, const fake_view *view, const fake_step *s, cu
         const cull_answer a = {s->batch.tests[i].tag, count_pixels(v, view, s->batch.tests[i].box), 0};
         const int is_lost = v->how == ANSWERS_NONE || (v->how == ANSWERS_SOME_LOST && random_below(&v->random, 3) == 0);
         if (is_lost) continue;
-        if (progress != CULL_DONE) v->answers[(*count)++] = a;
-        else if (v->late_count < v->c->built.max_tests * 8) v->late[v->late_count++] = (fake_late){a, v->frame, v->frame + 1 + v->late_frames};
+        const int is_late = progress == CULL_DONE || (progress == CULL_MORE && v->late_steps);
+        const uint32_t frame = progress == CULL_DONE ? v->frame + 1 + v->late_frames : v->frame, clock = progress == CULL_DONE ? 0 : v->clock + v->late_steps;
+        if (!is_late) v->answers[(*count)++] = a;
+        else if (v->late_count < v->c->built.max_tests * 8) v->late[v->late_count++] = (fake_late){a, v->frame, frame, clock};
     }
     for (uint32_t i = 0; v->how == ANSWERS_SHUFFLED && i < *count; i++) {
         const uint32_t other = random_below(&v->random, *count);
@@ -270,11 +291,12 @@ static void answer(fake_viewer *v, const fake_view *view, const fake_step *s, cu
     }
 }
 
-static void hear_late(fake_viewer *v, uint32_t *count)
+static void hear_late(fake_viewer *v, cull_progress progress, uint32_t *count)
 {
     uint32_t kept = 0;
     for (uint32_t i = 0; i < v->late_count; i++) {
-        if (v->late[i].ready_frame > v->frame || *count == v->c->built.max_tests * 2 + 1) {
+        const int is_ready = v->late[i].ready_frame <= v->frame && (v->late[i].ready_clock < v->clock || progress == CULL_WAIT);
+        if (!is_ready || *count == v->c->built.max_tests * 2 + 1) {
             v->late[kept++] = v->late[i];
             continue;
         }
@@ -305,7 +327,7 @@ const char *fake_frame_cut(fake_viewer *v, const fake_view *view, uint32_t flags
     memset(v->drawn, 0, items + FAKE_MOVERS_MOST);
     for (int p = 0; p < FAKE_PIXELS; p++) v->depth[p] = FAR;
     v->tests_asked = v->steps = v->drawn_count = v->waits = 0;
-    hear_late(v, &s.visit.answer_count);
+    hear_late(v, CULL_DONE, &s.visit.answer_count);
     while (progress != CULL_DONE && !fault && v->steps < steps_most) {
         s.visit.step = v->steps++;
         s.runs_before = s.batch.run_count;
@@ -314,11 +336,12 @@ const char *fake_frame_cut(fake_viewer *v, const fake_view *view, uint32_t flags
         progress = c->chain == CHAIN_SELECT ? c->plugin->select(v->query, &s.visit, &s.batch) : c->plugin->filter(v->query, &s.visit, &s.batch);
         v->tests_asked += s.batch.test_count;
         v->waits += progress == CULL_WAIT;
+        v->clock++;
         fault = take_runs(v, view, &s);
         if (s.batch.test_count > c->built.max_tests) fault = "more tests than told";
         if (progress != CULL_DONE && v->steps >= c->built.max_steps) fault = "more steps than told";
         answer(v, view, &s, progress, &s.visit.answer_count);
-        if (progress != CULL_DONE) hear_late(v, &s.visit.answer_count);
+        if (progress != CULL_DONE) hear_late(v, progress, &s.visit.answer_count);
     }
     free(candidates);
     return fault;

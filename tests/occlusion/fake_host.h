@@ -35,11 +35,11 @@ typedef struct fake_culler { // one culler and the zone it was built for
     cull_node *nodes;
     fake_chain chain;
 } fake_culler;
-// method: the option's value. Returns what create or build said; then there is nothing to close.
+// method: the option's value, or "METHOD KEY=VALUE ...". Returns what create or build said; then there is nothing to close.
 cull_result fake_culler_open(fake_culler *c, const hand_zone *zone, const char *method, fake_chain chain, uint64_t fail_at);
 void fake_culler_close(fake_culler *c);
 
-typedef struct fake_late { cull_answer answer; uint32_t asked_frame, ready_frame; } fake_late;
+typedef struct fake_late { cull_answer answer; uint32_t asked_frame, ready_frame, ready_clock; } fake_late;
 typedef struct fake_viewer { // one query
     fake_culler *c;
     cull_query *query;
@@ -52,7 +52,7 @@ typedef struct fake_viewer { // one query
     void *scratch;
     cull_mover movers[FAKE_MOVERS_MOST];
     double depth[FAKE_PIXELS];
-    uint32_t mover_count, late_count, frame, steps, tests_asked, drawn_count, waits, late_frames; // late_frames: of tests not waited for
+    uint32_t mover_count, late_count, frame, steps, tests_asked, drawn_count, waits, late_frames, late_steps, clock; // late_frames: of tests not waited for; late_steps: of those given with CULL_MORE; clock: steps
     fake_answers how;
     uint64_t random;
 } fake_viewer;

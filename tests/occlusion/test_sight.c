@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "fake_host.h"
 
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -188,6 +189,31 @@ static void around_the_corner_it_is_drawn_in_the_same_frame(void **state)
     hand_zone_free(&z);
 }
 
+static void a_mover_whose_box_is_no_number_is_drawn(void **state)
+{
+    static const char *const all[] = {"wait", "twophase", "chc"};
+    static fake_view view;
+    hand_zone town;
+    (void)state;
+    town_make(&town, 5, 220);
+    fake_view_make(&view, (cull_vec3){-30, 1.7f, -20}, 0.8, 0);
+    for (size_t m = 0; m < sizeof all / sizeof *all; m++) {
+        fake_culler c;
+        fake_viewer v;
+        assert_int_equal(fake_culler_open(&c, &town, all[m], CHAIN_SELECT, 0), CULL_OK);
+        fake_viewer_open(&v, &c);
+        for (uint32_t f = 0; f < 6; f++) {
+            movers_add(&v, 7, f);
+            v.movers[f].box.min.x = v.movers[f].box.max.x = NAN;
+            assert_null(fake_frame(&v, &view, 0));
+            assert_true(v.drawn[town.zone.item_count + f]);
+        }
+        fake_viewer_close(&v);
+        fake_culler_close(&c);
+    }
+    hand_zone_free(&town);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -198,6 +224,7 @@ int main(void)
         cmocka_unit_test(nothing_visible_is_dropped_with_answers_of_any_age),
         cmocka_unit_test(what_a_wall_hides_is_not_drawn),
         cmocka_unit_test(around_the_corner_it_is_drawn_in_the_same_frame),
+        cmocka_unit_test(a_mover_whose_box_is_no_number_is_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

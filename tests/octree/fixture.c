@@ -127,17 +127,9 @@ int octree_has_isa(const char *isa)
 
 const char *octree_set(const session *s, uint8_t *seen)
 {
-    if (s->item_count) memset(seen, 0, s->item_count);
-    if (s->run_count > s->built.max_runs) return "more runs than max_runs";
-    for (uint32_t i = 0; i < s->run_count; i++) {
-        const cull_run r = s->runs[i];
-        if (r.count == 0) return "an empty run";
-        if (r.first >= s->item_count || r.count > s->item_count - r.first) return "a run beyond the last item";
-        if (i && s->runs[i - 1].first + s->runs[i - 1].count == r.first) return "a run that goes on where the one before ends";
-        for (uint32_t place = r.first; place < r.first + r.count; place++)
-            if (seen[s->built.order[place]]++) return "an item twice";
-    }
-    return NULL;
+    for (uint32_t i = 1; i < s->run_count; i++)
+        if (s->runs[i - 1].first + s->runs[i - 1].count == s->runs[i].first) return "a run that goes on where the one before ends";
+    return session_set_any_order(s, seen);
 }
 
 void octree_must_be(const session *s, const cull_box *boxes, const made_volumes *v, const char *what)

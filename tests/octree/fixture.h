@@ -40,7 +40,7 @@ typedef struct octree_values { const char *kind, *loose, *backface, *isa; } octr
 cull_result octree_open(session *s, culler_host *h, const cull_zone *zone, const octree_values *values);
 int octree_has_isa(const char *isa); // on this CPU
 
-// As session_set, but runs may come in any order, and touch.
+// As session_set_any_order, but a run may not go on where the one before ends.
 const char *octree_set(const session *s, uint8_t *seen);
 void octree_must_be(const session *s, const cull_box *boxes, const made_volumes *v, const char *what); // after a select
 

@@ -4,12 +4,12 @@
 
 #include "host/core/hierarchy_check.h"
 #include "host/core/memory.h"
+#include "tests/common/ray_check.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { RUNS_MOST = 2000 };
 static const octree_values forms[] = {{"oct", "2", "0", "auto"}, {"quad", "1.5", "0", "auto"}, {"auto", "4", "0", "auto"}};
 enum { FORM_COUNT = 3 };
 
@@ -97,58 +97,19 @@ static void the_hierarchy_holds_every_item_once_in_tight_boxes_of_runs(void **st
                 must_be_a_tree(&t, h);
                 if (counts[c] > 1000 && h->node_count > counts[c]) fail_msg("scene %d: %u nodes", kind, h->node_count);
                 hand_zone laid;
-                cull_box *boxes = calloc((size_t)counts[c] + 1, sizeof *boxes);
-                assert_non_null(boxes);
-                for (uint32_t i = 0; i < counts[c]; i++) boxes[i] = t.boxes[t.s.built.order[i]];
-                zone_of_boxes(boxes, counts[c], &laid);
+                zone_in_order(&t.z.zone, t.s.built.order, &laid);
                 assert_int_equal(hierarchy_check(h, &laid.zone, allocator_heap(), &fault), RESULT_OK);
                 if (fault) fail_msg("scene %d, %u items, form %d: %s", kind, counts[c], f, fault);
                 hand_zone_free(&laid);
-                free(boxes);
                 stand_close(&t);
             }
 }
 
 // ---- Rays ----
 
-// The same slabs as the plugin's, by hand; > 1: it doesn't touch.
-static double entry_of(const double from[3], const double to[3], cull_box box)
+static ray_check ray_check_of(const stand *t)
 {
-    double in = 0, out = 1;
-    for (int k = 0; k < 3; k++) {
-        const double low = (double)(&box.min.x)[k], high = (double)(&box.max.x)[k], along = to[k] - from[k];
-        if (along == 0) {
-            if (from[k] < low || from[k] > high) return 2;
-            continue;
-        }
-        in = fmax(in, fmin((low - from[k]) / along, (high - from[k]) / along));
-        out = fmin(out, fmax((low - from[k]) / along, (high - from[k]) / along));
-    }
-    return in <= out ? in : 2;
-}
-
-static void must_be_the_ray_set(const hand_zone *w, const session *s, const cull_ray *ray, cull_vec3 a, cull_vec3 b)
-{
-    static cull_run runs[RUNS_MOST], first[RUNS_MOST];
-    const double from[3] = {(double)a.x, (double)a.y, (double)a.z}, to[3] = {(double)b.x, (double)b.y, (double)b.z};
-    const uint32_t count = ray->segment(s->culler, a, b, runs, RUNS_MOST);
-    uint8_t seen[RUNS_MOST] = {0};
-    double last = 0;
-    for (uint32_t i = 0; i < count; i++)
-        for (uint32_t place = runs[i].first; place < runs[i].first + runs[i].count; place++) {
-            const uint32_t item = s->built.order[place];
-            const double at = entry_of(from, to, cull_box_at(&w->zone.boxes, item));
-            assert_int_equal(seen[item]++, 0);
-            assert_true(at >= last); // nearest first
-            last = at;
-        }
-    for (uint32_t i = 0; i < w->zone.item_count; i++) assert_int_equal(seen[i], entry_of(from, to, cull_box_at(&w->zone.boxes, i)) <= 1);
-    for (uint32_t most = 0; most <= count && most < 6; most++) { // a short list holds the nearest
-        first[most] = (cull_run){77, 77};
-        assert_int_equal(ray->segment(s->culler, a, b, first, most), count);
-        if (most) assert_memory_equal(first, runs, most * sizeof *runs);
-        assert_int_equal(first[most].first, 77);
-    }
+    return (ray_check){&t->z.zone, t->s.built.order, t->s.culler, octree_extension(&t->s, CULL_EXT_RAY)};
 }
 
 static void a_segment_finds_the_boxes_it_touches_nearest_first(void **state)
@@ -159,6 +120,7 @@ static void a_segment_finds_the_boxes_it_touches_nearest_first(void **state)
         for (int f = 0; f < FORM_COUNT; f++) {
             stand t;
             stand_open(&t, &r, (scene_kind)kind, 500, &forms[f]);
+            const ray_check check = ray_check_of(&t);
             for (int q = 0; q < 60; q++) {
                 cull_vec3 a, b;
                 for (int k = 0; k < 3; k++) {
@@ -167,7 +129,7 @@ static void a_segment_finds_the_boxes_it_touches_nearest_first(void **state)
                 }
                 if (q % 7 == 0) a = t.boxes[random_below(&r, 500)].max;
                 if (q % 10 == 9) b = a; // a point
-                must_be_the_ray_set(&t.z, &t.s, octree_extension(&t.s, CULL_EXT_RAY), a, b);
+                segment_must_be_right(&check, a, b);
             }
             stand_close(&t);
         }
@@ -176,24 +138,15 @@ static void a_segment_finds_the_boxes_it_touches_nearest_first(void **state)
 static void a_box_finds_the_boxes_it_touches(void **state)
 {
     (void)state;
-    static cull_run runs[RUNS_MOST], first[RUNS_MOST];
     uint64_t r = 73;
     for (int kind = 0; kind < SCENE_KINDS; kind++) {
         stand t;
         stand_open(&t, &r, (scene_kind)kind, 500, &forms[kind % FORM_COUNT]);
-        const cull_ray *ray = octree_extension(&t.s, CULL_EXT_RAY);
+        const ray_check check = ray_check_of(&t);
         for (int q = 0; q < 60; q++) {
             cull_box box = t.boxes[random_below(&r, 500)];
-            uint8_t seen[500] = {0};
             for (int k = 0; k < 3; k++) (&box.max.x)[k] += (float)random_between(&r, 0, 30);
-            const uint32_t count = ray->box(t.s.culler, &box, runs, RUNS_MOST);
-            for (uint32_t i = 0; i < count; i++)
-                for (uint32_t place = runs[i].first; place < runs[i].first + runs[i].count; place++) assert_int_equal(seen[t.s.built.order[place]]++, 0);
-            for (uint32_t i = 0; i < 500; i++) assert_int_equal(seen[i], cull_box_touches(box, t.boxes[i]));
-            first[count / 2] = (cull_run){77, 77};
-            assert_int_equal(ray->box(t.s.culler, &box, first, count / 2), count);
-            if (count / 2) assert_memory_equal(first, runs, count / 2 * sizeof *runs);
-            assert_int_equal(first[count / 2].first, 77);
+            box_must_be_right(&check, box);
         }
         stand_close(&t);
     }

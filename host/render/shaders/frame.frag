@@ -30,7 +30,9 @@ vec3 hashed_colour(uint n)
 vec3 lit(vec3 albedo)
 {
     vec3 face = cross(dFdx(v_eye), dFdy(v_eye));
-    vec3 n = dot(v_normal, v_normal) > 0.25 ? v_normal * (gl_FrontFacing ? 1.0 : -1.0) : face * (dot(face, v_eye) > 0.0 ? -1.0 : 1.0);
+    // Seen edge-on a face may turn over when its corners are rounded to the raster's grid: what is all but edge-on is not turned round.
+    bool is_behind = !gl_FrontFacing && dot(v_normal, v_eye) > 0.2 * length(v_eye);
+    vec3 n = dot(v_normal, v_normal) > 0.25 ? v_normal * (is_behind ? -1.0 : 1.0) : face * (dot(face, v_eye) > 0.0 ? -1.0 : 1.0);
     n = n / max(length(n), 1e-30); // a face of no area has no direction; anything but NaN will do
     float sun = max(dot(n, vec3(0.47, 0.80, 0.37)), 0.0);
     float fill = max(dot(n, vec3(-0.70, 0.25, -0.67)), 0.0);

@@ -1,0 +1,303 @@
+// Memory, tests and answers of method=chc: see chc.h.
+// SPDX-License-Identifier: MIT
+#include "chc.h"
+#include "ledger.h"
+
+#include <string.h>
+
+enum { TESTS_AN_ENTRY = 3, FORGET_FRAMES = 16, PARTS_LEAST = 8 }; // FORGET_FRAMES: frames after which what joint tests taught counts half
+
+static const float TEST_POLYGONS = 2;   // what a test costs, its state changes and the way back of its answer with it
+static const float INTERVAL_MOST = 24; // frames
+
+// ---- Memory ----
+
+typedef struct array_plan { void **array; size_t count, size; } array_plan;
+enum { PLANS = 6 };
+
+static void plans_fill(const occlusion_history *h, occlusion_chc *c, array_plan plans[PLANS])
+{
+    const size_t items = h->tree->item_count, known = h->tree->node_count + items, all = known + h->mover_capacity, tests = all * TESTS_AN_ENTRY;
+    const array_plan made[PLANS] = {
+        {(void **)&c->past, known, sizeof *c->past},     {(void **)&c->seen_now, all, sizeof *c->seen_now},
+        {(void **)&c->queue, all, sizeof *c->queue},     {(void **)&c->tests, tests, sizeof *c->tests},
+        {(void **)&c->members, tests, sizeof *c->members}, {(void **)&c->due, items, sizeof *c->due},
+    };
+    memcpy(plans, made, sizeof made);
+}
+
+static size_t plan_bytes(const array_plan *p)
+{
+    return (p->count ? p->count : 1) * p->size;
+}
+
+cull_result chc_open(const cull_host *host, occlusion_history *h, const chc_request *q)
+{
+    array_plan plans[PLANS];
+    occlusion_chc *c = host->alloc(host, sizeof *c, _Alignof(occlusion_chc));
+    if (!c) return CULL_ERR_MEMORY;
+    *c = (occlusion_chc){.batches = q->batches, .member_most = q->entries * TESTS_AN_ENTRY};
+    h->chc = c;
+    plans_fill(h, c, plans);
+    for (int i = 0; i < PLANS; i++) {
+        *plans[i].array = host->alloc(host, plan_bytes(&plans[i]), 64);
+        if (!*plans[i].array) {
+            chc_close(host, h);
+            return CULL_ERR_MEMORY;
+        }
+        memset(*plans[i].array, 0, plan_bytes(&plans[i]));
+    }
+    return CULL_OK;
+}
+
+void chc_close(const cull_host *host, occlusion_history *h)
+{
+    array_plan plans[PLANS];
+    if (!h->chc) return;
+    plans_fill(h, h->chc, plans);
+    for (int i = 0; i < PLANS; i++)
+        if (*plans[i].array) host->free(host, *plans[i].array, plan_bytes(&plans[i]));
+    host->free(host, h->chc, sizeof *h->chc);
+    h->chc = NULL;
+}
+
+void chc_begin(occlusion_walk *w)
+{
+    occlusion_chc *c = w->h->chc;
+    c->queue_count = c->test_count = c->first_open = c->member_count = c->open_count = c->due_count = c->due_asked = 0;
+    c->waited = c->rounds = c->has_picture = c->marked_count = c->fills = c->idles = 0;
+    c->is_first = w->h->seen_count == 0 || (w->visit->view->flags & CULL_VIEW_CUT);
+}
+
+// ---- What is known of an entry ----
+
+static int is_mover(const occlusion_walk *w, tree_entry e)
+{
+    return e >= walk_mover_entry(w, 0);
+}
+
+static uint32_t bucket_of(const occlusion_walk *w, tree_entry e)
+{
+    if (is_mover(w, e)) return KEEP_MOVER;
+    const chc_past *p = &w->h->chc->past[e];
+    const uint32_t serial = w->h->serial;
+    if (p->looked == serial) return KEEP_OPENED;
+    return p->looked && p->looked == serial - 1 ? keep_bucket(serial - p->since) : KEEP_UNKNOWN;
+}
+
+float chc_chance(const occlusion_walk *w, tree_entry e)
+{
+    return model_keeps(&w->h->chc->model, bucket_of(w, e));
+}
+
+void chc_pull_down(occlusion_walk *w, tree_entry e)
+{
+    chc_past *p = &w->h->chc->past[e];
+    if (p->looked != w->h->serial - 1) p->since = p->looked = w->h->serial;
+}
+
+// After how many frames an item seen is looked at again: drawing it hidden for half of that, at the rate at which such items are
+// lost, costs as much as the test does. Spread at random, so that they do not all come in one frame.
+static uint32_t interval_of(const occlusion_walk *w, uint32_t place)
+{
+    const occlusion_chc *c = w->h->chc;
+    const float rate = model_loses(&c->model, c->past[tree_entry_of_item(w->tree, place)].sight), polygons = (float)w->tree->polygons[place];
+    const float best = sqrtf(2 * TEST_POLYGONS / (rate * (polygons > 1 ? polygons : 1)));
+    const float spread = 0.5f + (float)(chc_random(place, w->h->serial) >> 8) / 16777216.0f, frames = best * spread + 0.5f;
+    return frames < 1 ? 1 : (uint32_t)(frames < INTERVAL_MOST ? frames : INTERVAL_MOST);
+}
+
+static void note_hidden(occlusion_walk *w, tree_entry e)
+{
+    occlusion_chc *c = w->h->chc;
+    ratio_count(&c->model.keep[bucket_of(w, e)], 1, 1);
+    if (is_mover(w, e)) return;
+    chc_past *p = &c->past[e];
+    if (p->looked != w->h->serial - 1) p->since = w->h->serial;
+    p->looked = w->h->serial;
+}
+
+void chc_note_seen(occlusion_walk *w, tree_entry e, uint32_t pixels)
+{
+    occlusion_chc *c = w->h->chc;
+    const cull_box box = walk_box(w, e);
+    ratio_count(&c->model.keep[bucket_of(w, e)], 0, 1);
+    c->seen_now[e] = w->h->serial;
+    heap_push(w->h->heap, &w->h->heap_count, (heap_entry){walk_key(w, &box), e});
+    if (is_mover(w, e)) return;
+    c->past[e] = (chc_past){.since = w->h->serial, .sight = (uint8_t)sight_bucket(pixels)};
+    if (!tree_is_node(w->tree, e)) c->past[e].due = w->h->serial + interval_of(w, e - w->tree->node_count);
+}
+
+// ---- The visible queue ----
+
+void chc_due_add(occlusion_walk *w, uint32_t place)
+{
+    occlusion_chc *c = w->h->chc;
+    c->due[c->due_count++] = place;
+}
+
+uint32_t chc_ask_due(occlusion_walk *w, uint32_t most)
+{
+    occlusion_chc *c = w->h->chc;
+    uint32_t asked = 0;
+    while (c->due_asked < c->due_count && asked < most && chc_has_room(w)) {
+        const uint32_t place = c->due[c->due_asked++];
+        walk_put_test(w, &w->tree->boxes[place], CHC_VISIBLE | place);
+        asked++;
+    }
+    return asked;
+}
+
+uint32_t chc_ask_early(occlusion_walk *w)
+{
+    occlusion_history *h = w->h;
+    const uint32_t first = h->drawn_count ? chc_random(h->serial, w->visit->step) % h->drawn_count : 0;
+    for (uint32_t i = 0; i < h->drawn_count && chc_has_room(w); i++) {
+        const uint32_t place = h->drawn_list[(first + i) % h->drawn_count];
+        chc_past *p = &h->chc->past[tree_entry_of_item(w->tree, place)];
+        if ((int32_t)(p->due - h->serial) <= 0) continue; // asked, or near
+        p->due = h->serial;
+        walk_put_test(w, &w->tree->boxes[place], CHC_VISIBLE | place);
+        h->counters.early++;
+        return 1;
+    }
+    return 0;
+}
+
+// ---- Answers ----
+
+static int is_held_for_seen(const occlusion_walk *w, uint32_t place)
+{
+    return place < w->tree->item_count && ((w->h->items[place] & ITEM_SEEN) || w->h->drawn[place] == w->h->serial);
+}
+
+// All are counted before one is judged by the counts.
+static void count_visible(occlusion_walk *w, const cull_answer *a)
+{
+    const uint32_t place = a->tag & ~CHC_VISIBLE;
+    if (!is_held_for_seen(w, place)) return;
+    const chc_past *p = &w->h->chc->past[tree_entry_of_item(w->tree, place)];
+    const uint32_t frames = w->h->serial - a->age - p->since;
+    ratio_count(&w->h->chc->model.lost[p->sight], a->pixels == 0, frames && frames < 64 ? frames : 1);
+}
+
+static void hear_visible(occlusion_walk *w, const cull_answer *a)
+{
+    const uint32_t place = a->tag & ~CHC_VISIBLE, serial = w->h->serial;
+    if (!is_held_for_seen(w, place)) return;
+    chc_past *p = &w->h->chc->past[tree_entry_of_item(w->tree, place)];
+    walk_hear_drawn(w, place, a->pixels);
+    p->since = p->looked = serial;
+    p->due = p->failures = 0;
+    if (!a->pixels) return;
+    p->sight = (uint8_t)sight_bucket(a->pixels);
+    p->due = serial + interval_of(w, place);
+}
+
+// What stood together before is tested again in four parts, as one of them is to blame, or each for itself; what was brought
+// together in this frame parts again.
+static void part(occlusion_walk *w, const chc_test *t)
+{
+    occlusion_chc *c = w->h->chc;
+    for (uint32_t i = 0; i < t->count; i++) {
+        const tree_entry e = c->members[t->first + i];
+        if (is_mover(w, e)) continue;
+        chc_past *p = &c->past[e];
+        p->joint = (uint32_t)(t - c->tests);
+        if (t->is_known) p->mate = t->count < PARTS_LEAST ? 0 : c->members[t->first + i * 4 / t->count * t->count / 4] + 1;
+        if (t->is_known) continue;
+        if (p->failures < CHC_FAILURES_MOST) p->failures++;
+        const uint32_t pause = 1u << p->failures;
+        p->due = w->h->serial + pause / 2 + chc_random(t->first, w->h->serial) % pause + 1;
+    }
+}
+
+static void settle_joint(occlusion_walk *w, const chc_test *t, uint32_t pixels)
+{
+    occlusion_chc *c = w->h->chc;
+    if (t->is_known && !t->is_split) ratio_count(&c->model.mates, pixels == 0, 1);
+    else if (!t->is_known) ratio_count(&c->model.joint[t->hides][t->growth], pixels ? 0 : 1024, (uint32_t)(t->chance * 1024));
+    w->h->counters.joint_hits += pixels == 0;
+    if (pixels) {
+        part(w, t);
+        return;
+    }
+    for (uint32_t i = t->first; i < t->first + t->count; i++) {
+        const tree_entry e = c->members[i];
+        if (is_mover(w, e)) continue;
+        c->past[e].mate = c->members[t->first] + 1;
+        if ((int32_t)(c->past[e].due - w->h->serial) <= 0) c->past[e].failures = 0;
+    }
+}
+
+// One of a joint test's was seen, so the others may stand together.
+static void explain_joint(occlusion_walk *w, tree_entry e)
+{
+    occlusion_chc *c = w->h->chc;
+    if (is_mover(w, e) || c->past[e].joint >= c->test_count) return;
+    const chc_test *t = &c->tests[c->past[e].joint];
+    for (uint32_t i = t->first; i < t->first + t->count; i++) {
+        if (is_mover(w, c->members[i])) continue;
+        chc_past *p = &c->past[c->members[i]];
+        p->due = p->failures = 0;
+    }
+}
+
+static void settle(occlusion_walk *w, chc_test *t, uint32_t pixels)
+{
+    occlusion_chc *c = w->h->chc;
+    c->fills = c->idles = t->is_open = 0;
+    c->open_count--;
+    if (t->count > 1) settle_joint(w, t, pixels);
+    for (uint32_t i = t->first; i < t->first + t->count; i++) {
+        const tree_entry e = c->members[i];
+        walk_settle(w, &(walk_finding){e, pixels, t->count, t->step_cost});
+        if (!pixels) note_hidden(w, e);
+        else if (t->count == 1) {
+            if (t->is_split) explain_joint(w, e);
+            chc_note_seen(w, e, pixels);
+        } else chc_queue_add(w, e, CHC_ALONE);
+    }
+}
+
+// In the order in which they were asked, whatever order the answers came in.
+static void settle_heard(occlusion_walk *w)
+{
+    occlusion_chc *c = w->h->chc;
+    for (uint32_t i = c->first_open; i < c->test_count; i++)
+        if (c->tests[i].is_open && c->tests[i].is_heard) settle(w, &c->tests[i], c->tests[i].pixels);
+    while (c->first_open < c->test_count && !c->tests[c->first_open].is_open) c->first_open++;
+}
+
+void chc_give_up(occlusion_walk *w)
+{
+    occlusion_chc *c = w->h->chc;
+    for (; c->first_open < c->test_count; c->first_open++) {
+        chc_test *t = &c->tests[c->first_open];
+        if (!t->is_open) continue;
+        t->is_open = 0;
+        c->open_count--;
+        w->h->counters.unanswered++;
+        for (uint32_t k = t->first; k < t->first + t->count; k++) chc_note_seen(w, c->members[k], 1);
+    }
+}
+
+void chc_hear(occlusion_walk *w)
+{
+    occlusion_chc *c = w->h->chc;
+    const cull_visit *visit = w->visit;
+    for (uint32_t i = 0; i < visit->answer_count; i++) {
+        const cull_answer *a = &visit->answers[i];
+        if (a->tag & CHC_VISIBLE) count_visible(w, a);
+        else if (a->age == 0 && visit->step && a->tag < c->test_count) {
+            c->tests[a->tag].is_heard = 1;
+            c->tests[a->tag].pixels = a->pixels;
+        }
+    }
+    for (uint32_t i = 0; i < visit->answer_count; i++)
+        if (visit->answers[i].tag & CHC_VISIBLE) hear_visible(w, &visit->answers[i]);
+    settle_heard(w);
+    if (c->waited) chc_give_up(w);
+    c->waited = 0;
+}

@@ -1,0 +1,79 @@
+// What method=chc remembers of a viewer beside the history, and its queue of tests; see method_chc.c.
+// SPDX-License-Identifier: MIT
+#ifndef OCCLUSION_CHC_H
+#define OCCLUSION_CHC_H
+
+#include "chc_model.h"
+#include "chc_picture.h"
+#include "walk.h"
+
+enum { CHC_FAILURES_MOST = 5 };
+
+// Tags: with this bit an item's place, of an item drawn for seen; else a place in occlusion_chc.tests.
+#define CHC_VISIBLE 0x40000000u
+#define CHC_ALONE (UINT64_C(1) << 63) // a joint test of this frame did not hide it
+
+// Of a node or an item. looked is this frame and since too: its parent came into sight, nothing is known of it alone.
+typedef struct chc_past {
+    uint32_t since;  // the frame from which it has been hidden, or held for seen, without a gap
+    uint32_t looked; // the last frame that knew
+    uint32_t joint;  // the last of this frame's tests that had it among others
+    uint32_t mate;   // 1 + the entry that it was tested together with last, and found hidden; 0: alone
+    uint32_t due;    // seen: when it is tested again. Hidden: until then joint tests with it are doubted
+    uint8_t sight;   // bucket of its pixels, as last counted
+    uint8_t failures, spare[2];
+} chc_past;
+
+typedef struct chc_test {
+    uint32_t first, count; // in members
+    float chance;          // of the answer "hidden", by its parts alone
+    uint32_t step_cost;    // its share of what a step of tests costs, as in ledger.h
+    uint32_t pixels;       // the answer, when is_heard
+    uint8_t growth, hides, is_open, is_heard, is_split, is_known, spare[2]; // is_split: alone after a joint test; is_known: they stood so before
+} chc_test;
+
+typedef struct occlusion_chc {
+    chc_past *past;     // by node, then by item
+    uint32_t *seen_now; // by entry: serial of the frame that answered "seen"
+    uint64_t *queue;    // the invisible queue: CHC_ALONE or 0, place of its first item, entry
+    chc_test *tests;    // of this frame
+    tree_entry *members;
+    uint32_t *due;      // the visible queue: places
+    chc_model model;
+    chc_picture picture; // of the first marked_count items drawn in this frame
+    uint32_t queue_count, test_count, first_open, member_count, member_most, open_count, due_count, due_asked, waited, rounds, has_picture, marked_count;
+    uint32_t fills, idles; // steps since an answer came, without work that the frame needs; without any
+    uint32_t batches, is_first; // batches: tests are saved up; is_first: nothing to go by
+} occlusion_chc;
+
+typedef struct chc_request { uint32_t entries, batches; } chc_request;
+// On failure nothing is left behind and *h has none.
+cull_result chc_open(const cull_host *host, occlusion_history *h, const chc_request *q);
+void chc_close(const cull_host *host, occlusion_history *h);
+
+void chc_begin(occlusion_walk *w);
+// Answers are entered: what is hidden is noted, what a joint test did not hide is queued again, each alone, and what is seen
+// stands in h->heap, with seen_now.
+void chc_hear(occlusion_walk *w);
+void chc_queue_add(occlusion_walk *w, tree_entry e, uint64_t how); // how: CHC_ALONE or 0
+// Asks for the queue's tests, neighbours likely to be hidden in one; at most `most` tests, of what there is room for.
+void chc_ask(occlusion_walk *w, uint32_t most);
+// An item drawn for seen is tested at the end of this frame or while answers are out.
+void chc_due_add(occlusion_walk *w, uint32_t place);
+uint32_t chc_ask_due(occlusion_walk *w, uint32_t most); // how many
+// One more, whose time has not come: there is no other work while answers are out. 0: no such item.
+uint32_t chc_ask_early(occlusion_walk *w);
+// What was asked and is not answered is given up: each member is as good as seen.
+void chc_give_up(occlusion_walk *w);
+void chc_note_seen(occlusion_walk *w, tree_entry e, uint32_t pixels);
+// Of an entry by itself, to be hidden.
+float chc_chance(const occlusion_walk *w, tree_entry e);
+static inline int chc_has_room(const occlusion_walk *w)
+{
+    return w->batch->test_count < w->h->test_most;
+}
+
+// Its parent came into sight: nothing is known of the entry alone, unless it was tested last frame.
+void chc_pull_down(occlusion_walk *w, tree_entry e);
+
+#endif
