@@ -10,7 +10,7 @@
 #include "zone_data.h"
 
 enum {
-    FLOW_ZONE_VOLUMES = 32,  // volumes of a zone before they merge to their screen rectangle
+    FLOW_ZONE_VOLUMES = 64,  // volumes of a zone before they merge to their screen rectangle
     FLOW_CROSSINGS = 4096,   // volumes of a view that are not its whole frustum, before all that come merge
 };
 

@@ -8,7 +8,7 @@
 
 #include "cells.h"
 
-enum { SIGHT_VOLUMES = 40 }; // kept; what comes on top is run again at select
+enum { SIGHT_VOLUMES = 72 }; // kept; what comes on top is run again at select
 
 typedef struct sight_volume { cull_plane planes[CULL_MAX_PLANES]; uint32_t plane_count, entry; } sight_volume;
 typedef struct sight_view {
