@@ -55,7 +55,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     else if (key == ARGP_KEY_ARG && !a->kind) a->kind = text;
     else if (key == ARGP_KEY_ARG) argp_error(state, "one KIND, not also '%s'", text);
     else if (key == ARGP_KEY_END && (!a->kind || !a->out)) argp_error(state, "KIND and -o are needed");
-    else if (key == ARGP_KEY_END && is_views(a) != (a->scene && a->views)) argp_error(state, "KIND views takes --scene and --views, no other does");
+    else if (key == ARGP_KEY_END && (is_views(a) ? !a->scene || !a->views : a->scene || a->views)) argp_error(state, "KIND views takes --scene and --views, no other does");
     else return ARGP_ERR_UNKNOWN;
     return 0;
 }

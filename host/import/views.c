@@ -158,7 +158,7 @@ result camera_path_load(const char *what, const scene *s, double aspect, const a
     const auto_kind kind = auto_kind_of(what, &number);
     if (kind != AUTO_NONE) {
         const uint32_t count = read_count(number);
-        if (!count) return report_error(r, NULL, 0, "--views %s: write auto:N or auto:walk:N, or auto:edges, street, roofs or turn:N, N from 1 to 100000", what);
+        if (!count) return report_error(r, NULL, 0, "--views %s: write auto:N, auto:walk:N, auto:edges:N, auto:street:N, auto:roofs:N or auto:turn:N, N from 1 to 100000", what);
         return make_automatic(kind, count, s, aspect, memory, r, out);
     }
     static const char of_scene[] = "path:";

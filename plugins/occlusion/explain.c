@@ -18,7 +18,7 @@ size_t explain_item(const occlusion_walk *w, uint32_t item, char *text, size_t s
         else if (h->drawn[place] == h->serial) length = snprintf(text, size, "kept: its box may be seen");
         else if (walk_is_masked(w, place)) length = snprintf(text, size, "dropped: a culler before left it out, or a picture stands for it");
         else if (walk_place_of(w, &t->boxes[place]) == WALK_OUT) length = snprintf(text, size, "dropped: its box lies outside every volume");
-        else if (h->rested == h->serial) length = snprintf(text, size, "kept: tests do not pay in this zone; it is drawn without");
+        else if (h->serial && h->rested == h->serial) length = snprintf(text, size, "kept: tests do not pay in this zone; it is drawn without");
         else length = snprintf(text, size, "dropped: no pixel of its box, or of one around it, can be seen behind what is drawn");
     }
     return length < 0 ? 0 : (size_t)length;

@@ -504,7 +504,7 @@ static void counts_that_make_no_path_are_refused(void **state)
         report r = hear(&h);
         camera_path path = {0};
         assert_int_equal(camera_path_load(wrong[i], s, ASPECT, allocator_heap(), &r, &path), RESULT_BAD_INPUT);
-        assert_non_null(strstr(h.text, "write auto:N or auto:walk:N"));
+        assert_non_null(strstr(h.text, "write auto:N, auto:walk:N"));
         assert_null(path.cameras);
     }
     scene_free(s, allocator_heap());
