@@ -2,10 +2,10 @@
 // such that every child but the last is full. O(n log n) whatever the boxes are.
 // SPDX-License-Identifier: MIT
 #include "hiz_tree.h"
+#include "median.h"
 
 #include <string.h>
 
-typedef struct sort_key { float value; uint32_t item; } sort_key;
 typedef struct split_range { uint32_t first, count; } split_range;
 enum { RANGES_MOST = 64 }; // waiting at once: the larger part is put off, so there are at most log2 of the items
 
@@ -17,45 +17,6 @@ typedef struct splitter {
 } splitter;
 
 // ---- Medians ----
-
-static int key_less(sort_key a, sort_key b)
-{
-    return a.value < b.value || (a.value == b.value && a.item < b.item);
-}
-
-static uint32_t random_below(splitter *s, uint32_t count)
-{
-    s->seed = s->seed * 1664525u + 1013904223u;
-    return (uint32_t)((uint64_t)s->seed * count >> 32);
-}
-
-// Keys below place `middle` become the least. No two keys are equal: the item settles it.
-static void keys_part(splitter *s, uint32_t count, uint32_t middle)
-{
-    uint32_t low = 0, high = count - 1;
-    while (low < high) {
-        const sort_key pivot = s->keys[low + random_below(s, high - low + 1)];
-        uint32_t i = low, j = high;
-        for (;;) {
-            while (key_less(s->keys[i], pivot)) i++;
-            while (key_less(pivot, s->keys[j])) j--;
-            if (i >= j) break;
-            const sort_key swapped = s->keys[i];
-            s->keys[i++] = s->keys[j];
-            s->keys[j--] = swapped;
-        }
-        if (middle < i) high = i - 1; // all before i are less than all from i on
-        else low = i > low ? i : low + 1;
-    }
-}
-
-static float centre_of(const cull_zone *zone, uint32_t item, int axis)
-{
-    const cull_boxes *b = &zone->boxes;
-    const float *const low[3] = {b->min_x, b->min_y, b->min_z}, *const high[3] = {b->max_x, b->max_y, b->max_z};
-    const float centre = low[axis][item] * 0.5f + high[axis][item] * 0.5f;
-    return centre == centre ? centre : 0;
-}
 
 static int widest_axis(const splitter *s, uint32_t first, uint32_t count)
 {
@@ -87,7 +48,7 @@ static void range_part(splitter *s, split_range r, uint32_t middle)
 {
     const int axis = widest_axis(s, r.first, r.count);
     for (uint32_t i = 0; i < r.count; i++) s->keys[i] = (sort_key){centre_of(s->zone, s->items[r.first + i], axis), s->items[r.first + i]};
-    keys_part(s, r.count, middle);
+    keys_part(s->keys, r.count, middle, &s->seed);
     for (uint32_t i = 0; i < r.count; i++) s->items[r.first + i] = s->keys[i].item;
 }
 

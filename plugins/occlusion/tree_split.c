@@ -1,13 +1,13 @@
 // A tree of occlusion's own: items parted at the median of the axis that their centres spread most along, eight ways a node.
 // Invariant: places of a subtree lie together, a node's own first; O(n log n) whatever the boxes are, equal centres too.
 // SPDX-License-Identifier: MIT
+#include "median.h"
 #include "tree.h"
 
 #include <string.h>
 
 enum { OWN_MOST = 16, OWN_FROM = 64 }; // large items stay with a node of at least OWN_FROM items, if they are few
 
-typedef struct sort_key { float value; uint32_t item; } sort_key;
 typedef struct split_range { uint32_t first, count, node; } split_range;
 
 typedef struct splitter {
@@ -20,45 +20,6 @@ typedef struct splitter {
 } splitter;
 
 // ---- Medians ----
-
-static int key_less(sort_key a, sort_key b)
-{
-    return a.value < b.value || (a.value == b.value && a.item < b.item);
-}
-
-static uint32_t random_below(splitter *s, uint32_t count)
-{
-    s->seed = s->seed * 1664525u + 1013904223u;
-    return (uint32_t)((uint64_t)s->seed * count >> 32);
-}
-
-// Keys below place `middle` become the least. No two keys are equal: the item settles it.
-static void keys_part(splitter *s, uint32_t count, uint32_t middle)
-{
-    uint32_t low = 0, high = count - 1;
-    while (low < high) {
-        const sort_key pivot = s->keys[low + random_below(s, high - low + 1)];
-        uint32_t i = low, j = high;
-        for (;;) {
-            while (key_less(s->keys[i], pivot)) i++;
-            while (key_less(pivot, s->keys[j])) j--;
-            if (i >= j) break;
-            const sort_key swapped = s->keys[i];
-            s->keys[i++] = s->keys[j];
-            s->keys[j--] = swapped;
-        }
-        if (middle < i) high = i - 1; // all before i are less than all from i on
-        else low = i > low ? i : low + 1;
-    }
-}
-
-static float centre_of(const cull_zone *zone, uint32_t item, int axis)
-{
-    const cull_box b = cull_box_at(&zone->boxes, item);
-    const float low[3] = {b.min.x, b.min.y, b.min.z}, high[3] = {b.max.x, b.max.y, b.max.z};
-    const float centre = low[axis] * 0.5f + high[axis] * 0.5f;
-    return centre == centre ? centre : 0;
-}
 
 static int widest_axis(const splitter *s, uint32_t first, uint32_t count)
 {
@@ -83,7 +44,7 @@ static void halve(splitter *s, uint32_t first, uint32_t count, uint32_t left)
 {
     const int axis = widest_axis(s, first, count);
     for (uint32_t i = 0; i < count; i++) s->keys[i] = (sort_key){centre_of(s->zone, s->order[first + i], axis), s->order[first + i]};
-    keys_part(s, count, left);
+    keys_part(s->keys, count, left, &s->seed);
     for (uint32_t i = 0; i < count; i++) s->order[first + i] = s->keys[i].item;
 }
 
