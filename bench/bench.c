@@ -4,6 +4,7 @@
 #include "bench.h"
 #include "drawn.h"
 #include "images.h"
+#include "pictures.h"
 #include "progress.h"
 #include "statistics.h"
 #include "strategy.h"
@@ -28,7 +29,14 @@ static int needs_renderer(const run *b)
 {
     for (uint32_t k = 0; k < b->q->strategy_count; ++k)
         if (b->strategies[k].uses_renderer) return 1;
-    return b->q->truth == BENCH_TRUTH || b->q->images;
+    return b->q->truth == BENCH_TRUTH || b->q->images || b->q->pictures == BENCH_PICTURES_ALL;
+}
+
+static int wants_pictures(const run *b)
+{
+    for (uint32_t k = 0; k < b->q->strategy_count; ++k)
+        if (pictures_wanted(b->q, &b->strategies[k])) return 1;
+    return 0;
 }
 
 static result open_strategies(run *b)
@@ -123,6 +131,8 @@ static view_counts add_counts(bench_row *row, const strategy *s, const strategy_
     row->steps += v->stats.steps;
     row->draw_calls += v->draw_calls;
     row->state_changes += v->state_changes;
+    row->refreshes += v->stats.captures;
+    if (v->picture_bytes > row->picture_bytes) row->picture_bytes = v->picture_bytes;
     row->portal_merges += v->stats.portal_merges;
     row->limits_hit += v->stats.limits_hit;
     row->stalls += v->stats.stalls;
@@ -152,7 +162,7 @@ static void close_row(run *b, bench_row *row, const strategy *s)
     row->hard_excess = row->hard_visible > 0 ? row->hard_drawn / row->hard_visible : 0;
     double *const means[] = {&row->polygons_drawn, &row->polygons_visible, &row->polygons_items, &row->triangles_drawn, &row->items_drawn,
                              &row->items_visible,  &row->runs, &row->floor, &row->movers_drawn, &row->movers_visible, &row->queries,
-                             &row->steps, &row->draw_calls, &row->state_changes, &row->zones, &row->volumes, &row->crossings};
+                             &row->steps, &row->draw_calls, &row->state_changes, &row->refreshes, &row->zones, &row->volumes, &row->crossings};
     for (size_t i = 0; i < sizeof means / sizeof *means; ++i) *means[i] /= views;
     for (uint32_t v = 0; v < b->q->path->count; ++v) {
         row->missed_pixels += s->missed[v];
@@ -168,17 +178,23 @@ static void close_row(run *b, bench_row *row, const strategy *s)
     row->indices_built = s->indices_built;
 }
 
-// Each view's median over the passes, of cull_ns * cull_weight + gl_ms * gl_weight, into b->scratch.
+uint32_t bench_warmup_views(const camera_path *path)
+{
+    static const char walk[] = "auto:walk:";
+    return path->count >= BENCH_WARMUP_WALK && strncmp(path->name, walk, sizeof walk - 1) == 0 ? BENCH_WARMUP_VIEWS : 0;
+}
+
+// Each view's median over the passes, of cull_ns * cull_weight + gl_ms * gl_weight, into b->scratch; warm-up left out.
 static double *medians_of_views(run *b, const strategy *s, double cull_weight, double gl_weight)
 {
-    const uint32_t views = b->q->path->count, repeat = b->q->repeat;
+    const uint32_t views = b->q->path->count, repeat = b->q->repeat, warmup = bench_warmup_views(b->q->path);
     double *of_view = b->scratch, *of_pass = b->scratch + views;
-    for (uint32_t v = 0; v < views; ++v) {
+    for (uint32_t v = warmup; v < views; ++v) {
         for (uint32_t p = 0; p < repeat; ++p) {
             const size_t at = (size_t)p * views + v;
             of_pass[p] = s->cull_ns[at] * cull_weight + s->gl_ms[at] * gl_weight;
         }
-        of_view[v] = percentile(of_pass, repeat, 0.5);
+        of_view[v - warmup] = percentile(of_pass, repeat, 0.5);
     }
     return of_view;
 }
@@ -188,14 +204,17 @@ static void close_times(run *b, bench_row *row, const strategy *s)
     row->mover_update_ns = s->times.movers ? s->times.mover_ns / (double)s->times.movers : 0;
     row->swap_ms = s->times.swaps ? s->times.swap_ns * 1e-6 / (double)s->times.swaps : 0;
     row->swaps = s->times.swaps;
-    const uint32_t views = b->q->path->count;
+    const uint32_t views = b->q->path->count - bench_warmup_views(b->q->path);
     double *cull_ns = medians_of_views(b, s, 1, 0);
     row->cull_ns_mean = mean(cull_ns, views);
     row->cull_ns_p95 = percentile(cull_ns, views, 0.95);
     row->cull_ns_p99 = percentile(cull_ns, views, 0.99);
     row->cull_ns = percentile(cull_ns, views, 0.5);
     row->gl_ms = percentile(medians_of_views(b, s, 0, 1), views, 0.5);
-    row->total_ms = percentile(medians_of_views(b, s, 1e-6, 1), views, 0.5);
+    double *total_ms = medians_of_views(b, s, 1e-6, 1);
+    row->total_ms = percentile(total_ms, views, 0.5);
+    row->total_ms_p95 = percentile(total_ms, views, 0.95);
+    row->total_ms_p99 = percentile(total_ms, views, 0.99);
 }
 
 // ---- Passes ----
@@ -301,9 +320,12 @@ static result run_all(run *b)
     done = done == RESULT_OK ? open_strategies(b) : report_no_memory(b->r, NULL);
     if (done == RESULT_OK && needs_renderer(b)) done = open_renderer(b);
     const uint64_t passes = (uint64_t)b->q->repeat + (b->q->truth == BENCH_NO_TRUTH);
-    b->bar = progress_start(b->q->path->count * (truths_needed(b) + passes * b->q->strategy_count));
+    const int pictures = done == RESULT_OK && wants_pictures(b);
+    b->bar = progress_start(b->q->path->count * (truths_needed(b) + passes * b->q->strategy_count + (uint64_t)pictures));
     if (done == RESULT_OK && b->q->truth == BENCH_TRUTH) done = find_truths(b);
     if (done == RESULT_OK) done = run_passes(b);
+    if (done == RESULT_OK && pictures)
+        done = pictures_run(&(pictures_request){b->q, b->strategies, b->out->rows, &b->motion, b->g}, &b->bar, b->r);
     for (uint32_t k = 0; k < b->q->strategy_count && done == RESULT_OK; ++k) {
         done = strategy_ask_figures(&b->strategies[k], b->r);
         close_row(b, &b->out->rows[k], &b->strategies[k]);

@@ -10,6 +10,9 @@
 #include "truth.h"
 
 typedef enum bench_truth { BENCH_TRUTH, BENCH_NO_TRUTH } bench_truth;
+// Pictures beside full geometry (pictures.h): of strategies that show pictures of their own, with BENCH_TRUTH; of all; of none.
+typedef enum bench_pictures { BENCH_PICTURES_SHOWN, BENCH_PICTURES_ALL, BENCH_PICTURES_NONE } bench_pictures;
+typedef enum bench_costs { BENCH_COSTS_MEASURED, BENCH_COSTS_FIXED } bench_costs; // that cullers weigh by, see CULL_EXT_COSTS; FIXED: those that the services have
 typedef enum bench_ids { BENCH_RUNS, BENCH_IDS } bench_ids; // IDS: writing every drawn id belongs to cull_ns
 
 // Which chain each zone has. A set names them by zone (scene.zone_count, NULL entries: `chain`). With swap_views the zones
@@ -32,6 +35,8 @@ typedef struct bench_request {
     uint32_t samples; // the truth is a picture this many times as wide and high; 1 to BENCH_SAMPLES_MOST; 0 as 1. images only with 1
     bench_truth truth;
     bench_ids ids;
+    bench_costs costs;
+    bench_pictures pictures;
     const char *images; // folder for pictures, NULL: none
 } bench_request;
 
@@ -45,6 +50,16 @@ typedef struct bench_row {
     double polygons_drawn, polygons_visible, polygons_items, triangles_drawn, items_drawn, items_visible, runs, floor;
     double movers_drawn, movers_visible, queries, steps, draw_calls, state_changes;
     double excess, excess_items, build_ms;
+    double total_ms_p95, total_ms_p99; // over views, as total_ms
+    double refreshes;                  // captures a view
+    uint64_t picture_bytes;            // of all slots that hold a picture, the most of any view
+    uint32_t pictures_measured, has_ssim; // views beside full geometry; 0: the next lines mean nothing. has_ssim 0: too small for it
+    double psnr;                       // dB, of the mean squared error over all those views; at most PSNR_MOST_DB
+    double ssim, flip, flip_p99, flip_max; // means of the views' means; the views' means' 99th percentile and largest
+    uint64_t crack_pixels, crack_inner, crack_spills, crack_pixels_max; // over all views: see cracks.h
+    uint64_t mover_pixels, mover_pixels_wrong; // over all views: where a mover shows in truth or picture, and in one alone
+    uint32_t flip_view, crack_view;    // the worst of each
+    uint64_t picture_faults;           // faults of that pass
     double hard_excess, hard_drawn, hard_visible; // of the views that see at least BENCH_HARD_POLYGONS; the last two are sums over them
     uint64_t missed_pixels, missed_items, missed_pixels_max;
     double zones, volumes, crossings; // zones reached, volumes they are seen through, portals tried
@@ -74,6 +89,10 @@ result bench_run(const bench_request *q, report *r, bench_result *out);
 void bench_result_free(bench_result *b);
 // 1 when a chain missed an item although it promises not to, or a strategy drew what it did not say.
 uint32_t bench_check_failed(const bench_row *row);
+// The first views of a long walk (auto:walk:200 or more), until a strategy with history has one: they are drawn and checked, and
+// left out of times and of means over pictures. 0 for all other paths.
+enum { BENCH_WARMUP_VIEWS = 60, BENCH_WARMUP_WALK = 200 };
+uint32_t bench_warmup_views(const camera_path *path);
 
 typedef struct bench_labels { const char *scene, *path; } bench_labels; // for names and context
 
@@ -86,5 +105,7 @@ typedef struct bench_text { // free with memory_free(q->services->memory, bytes,
 result bench_table(const bench_result *b, const bench_request *q, const bench_labels *labels, bench_text *out);
 // Google Benchmark's JSON. What was not measured is null, and so is an excess where nothing was visible.
 result bench_json(const bench_result *b, const bench_request *q, const bench_labels *labels, bench_text *out);
+// As JSON's counters, a line a strategy; the first line names them. What was not measured is empty. Figures of plugins are left out.
+result bench_csv(const bench_result *b, const bench_request *q, const bench_labels *labels, bench_text *out);
 
 #endif

@@ -25,8 +25,9 @@ static const scene_kind *kind_named(const char *name)
         {"maze", "rooms", NULL, zoned_maze, 100, 10, 100000},
         {"house", "", NULL, zoned_house, 0, 0, 0},
         {"demo", "", ".obj", NULL, 0, 0, 0},
-        {"flagship", "", NULL, zoned_flagship, 0, 0, 0},
+        {"flagship", "metres to the horizon", NULL, zoned_flagship, 150, 150, 2000},
         {"terrain", "tiles", ".obj", NULL, 1024, 1, 65536},
+        {"forest", "triangles", ".obj", NULL, 100000, 1000, 20000000},
     };
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; ++i)
         if (strcmp(kinds[i].name, name) == 0) return &kinds[i];
@@ -118,6 +119,7 @@ result generate_scene(const char *kind, uint64_t size, uint64_t seed, const char
     if (strcmp(k->name, "city") == 0) generate_city(size, seed, memory, &out);
     else if (strcmp(k->name, "swarm") == 0) generate_swarm(size, seed, &out);
     else if (strcmp(k->name, "terrain") == 0) generate_terrain(size, seed, memory, &out);
+    else if (strcmp(k->name, "forest") == 0) generate_forest(size, seed, memory, &out);
     else generate_rooms(size, seed, memory, &out);
     return text_close(&out, path, r);
 }

@@ -1,10 +1,10 @@
-// flagship: the street, its houses and the hills; a walk from the street down to a cellar and out of an upper window.
+// flagship: the street, its houses, hills and woods to the horizon; a walk from the street down to a cellar and out of an upper window.
 // SPDX-License-Identifier: MIT
 #include "generate_flagship.h"
 
 #include "generate_land.h"
 
-enum { FLAGSHIP_KEY = 0x666c6167, WALK_VIEWS = 720, EYE = 165, OUTDOOR_EYES = 80, HILL_TREES = 7 };
+enum { FLAGSHIP_KEY = 0x666c6167, WALK_VIEWS = 720, EYE = 165, OUTDOOR_EYES = 80, HILL_TREES = 7, WOOD_SPACING = 30 }; // metres from tree to tree, about
 
 static const house_site sites[FLAGSHIP_HOUSES] = {
     {0, -650, -600, 0, HOUSE_TALL, HOUSE_CELLAR, HOUSE_DOOR_OPEN, "brick", "roof_tiles"},
@@ -47,6 +47,22 @@ static void street_fill(obj_writer *w, const land *l, random_stream *r)
         obj_numbered_object(w, "tree", 14 + i);
         model_tree(w, (spot){x, land_height(l, x, z) - 0.3, z}, 7 + 5 * random_unit(r), r);
     }
+}
+
+// Woods on the hills beyond, a tree a square of a grid.
+static void woods_fill(obj_writer *w, const land *l, random_stream *r)
+{
+    const int32_t half = l->half / METRE, near = LAND_NEAR / METRE - WOOD_SPACING / 2;
+    uint32_t number = 0;
+    for (int32_t z = -half; z + WOOD_SPACING <= half; z += WOOD_SPACING)
+        for (int32_t x = -half; x + WOOD_SPACING <= half; x += WOOD_SPACING) {
+            const double at_x = x + WOOD_SPACING * random_unit(r), at_z = z + WOOD_SPACING * random_unit(r);
+            if (at_x > -near && at_x < near && at_z > -near && at_z < near) continue;
+            const spot foot = {at_x, land_height(l, at_x, at_z), at_z};
+            obj_numbered_object(w, "wood", number++);
+            if (random_below(r, 3)) model_conifer(w, foot, 7 + 9 * random_unit(r), r);
+            else model_broadleaf(w, foot, 7 + 7 * random_unit(r), r);
+        }
 }
 
 static void bench_write(obj_writer *w, uint32_t number, double x, double z)
@@ -177,7 +193,7 @@ static void outdoor_eyes(const zoned_scene *z, json_writer *j)
 void zoned_flagship(zoned_scene *z)
 {
     random_stream plans = random_make(z->seed, FLAGSHIP_KEY), things = random_make(z->seed, FLAGSHIP_KEY + 2);
-    land ground = {.flat_x = 45 * METRE, .flat_z = 25 * METRE, .road_half = 35 * METRE / 10, .pavement_half = 6 * METRE, .road_end = 385 * METRE / 10,
+    land ground = {.half = (int32_t)z->size * METRE, .flat_x = 45 * METRE, .flat_z = 25 * METRE, .road_half = 35 * METRE / 10, .pavement_half = 6 * METRE, .road_end = 385 * METRE / 10,
                     .hole_count = FLAGSHIP_HOUSES};
     for (uint32_t i = 0; i < FLAGSHIP_HOUSES; ++i) {
         house_plan(&sites[i], &z->plan, &plans);
@@ -195,6 +211,7 @@ void zoned_flagship(zoned_scene *z)
     street_fill(&w, &ground, &things);
     square_write(&w);
     hedge_write(&w);
+    if (ground.half > LAND_NEAR) woods_fill(&w, &ground, &things);
     obj_close(&w);
     walk_make(&z->walk);
     z->walk_views = WALK_VIEWS;

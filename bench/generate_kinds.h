@@ -13,6 +13,7 @@ void generate_city(uint64_t boxes, uint64_t seed, const allocator *memory, text_
 void generate_swarm(uint64_t boxes, uint64_t seed, text_file *out);
 void generate_rooms(uint64_t rooms, uint64_t seed, const allocator *memory, text_file *out);
 void generate_terrain(uint64_t tiles, uint64_t seed, const allocator *memory, text_file *out);
+void generate_forest(uint64_t triangles, uint64_t seed, const allocator *memory, text_file *out);
 void generate_demo(uint64_t seed, const allocator *memory, text_file *out);
 void generate_demo_path(text_file *out);
 

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-enum { LINES_MOST = 120, LAND_STEP = 75 * METRE / 10 };
+enum { LINES_MOST = 320, NEAR_STEP = 75 * METRE / 10, FAR_STEP = 20 * METRE };
 
 typedef struct lines { int32_t at[LINES_MOST]; uint32_t count; } lines;
 
@@ -50,7 +50,7 @@ static const char *material_of(const land *l, int32_t x, int32_t z)
     const int on_street = x >= -l->road_end && x < l->road_end;
     if (on_street && z >= -l->road_half && z < l->road_half) return "road";
     if (on_street && z >= -l->pavement_half && z < l->pavement_half) return "pavement_stone";
-    const uint32_t patch = (uint32_t)((x + LAND_HALF) / step * 7 + (z + LAND_HALF) / step * 3);
+    const uint32_t patch = (uint32_t)((x + LAND_NEAR) / step * 7 + (z + LAND_NEAR) / step * 3);
     return patch % 5 ? "grass" : "grass_3";
 }
 
@@ -66,13 +66,21 @@ static void cell_write(obj_writer *w, const land *l, const int32_t x[2], const i
     obj_polygon(w, (const place[3]){a, c, d}, 3);
 }
 
+static void grid_lines(const land *l, lines *out)
+{
+    for (int32_t at = -LAND_NEAR; at <= LAND_NEAR; at += NEAR_STEP) line_add(out, at);
+    for (int32_t at = LAND_NEAR; at < l->half;) {
+        at = at + FAR_STEP < l->half ? at + FAR_STEP : l->half;
+        line_add(out, at);
+        line_add(out, -at);
+    }
+}
+
 void land_write(obj_writer *w, const land *l)
 {
     lines x = {0}, z = {0};
-    for (int32_t at = -LAND_HALF; at <= LAND_HALF; at += LAND_STEP) {
-        line_add(&x, at);
-        line_add(&z, at);
-    }
+    grid_lines(l, &x);
+    grid_lines(l, &z);
     for (uint32_t i = 0; i < l->hole_count; ++i) {
         line_add(&x, l->holes[i].min.x);
         line_add(&x, l->holes[i].max.x);

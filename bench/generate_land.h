@@ -5,11 +5,12 @@
 
 #include "generate_obj.h"
 
-enum { LAND_HALF = 150 * METRE, LAND_HOLES = 8 };
+enum { LAND_NEAR = 150 * METRE, LAND_HOLES = 8 };
 
 typedef struct land {
     block holes[LAND_HOLES]; // no ground there; x and z count
     uint32_t hole_count;
+    int32_t half;                    // of its width; a wide grid from LAND_NEAR on; at most 2,000 m
     int32_t flat_x, flat_z;          // half the sizes of what is level, at 0
     int32_t road_half, pavement_half, road_end; // of a street along x, and where it ends; 0: none
 } land;

@@ -148,6 +148,51 @@ void model_tree(obj_writer *w, spot foot, double height, random_stream *r)
     }
 }
 
+// ---- Trees of few triangles, for woods ----
+
+typedef struct tier { double low_radius, high_radius, low, high; } tier;
+
+static spot tier_point(const void *shape, double u, double v)
+{
+    const tier *t = shape;
+    const double radius = t->low_radius * (1 - v) + t->high_radius * v;
+    return (spot){radius * turn_cosine(u), t->low * (1 - v) + t->high * v, radius * turn_sine(u)};
+}
+
+static void tier_write(obj_writer *w, const tier *t, spot foot, uint32_t around)
+{
+    obj_surface(w, &(surface){.point = tier_point, .shape = t, .around = around, .along = 1}, foot);
+}
+
+static const double ROOT_M = 0.5; // in the ground, for it slopes
+
+void model_conifer(obj_writer *w, spot foot, double height, random_stream *r)
+{
+    enum { TIERS = 5, AROUND = 11 };
+    const double wide = height * (0.16 + 0.06 * random_unit(r));
+    obj_material(w, "bark_wood");
+    tier_write(w, &(tier){height * 0.025, height * 0.02, -ROOT_M, height * 0.3}, foot, 6);
+    obj_material(w, "leaves_conifer");
+    for (int i = 0; i < TIERS; ++i) {
+        const double low = height * (0.15 + 0.15 * i), radius = wide * (1 - 0.16 * i);
+        tier_write(w, &(tier){radius * 0.2, radius, low + height * 0.03, low}, foot, AROUND); // its underside
+        tier_write(w, &(tier){radius, 0, low, low + height * 0.28}, foot, AROUND);
+    }
+}
+
+void model_broadleaf(obj_writer *w, spot foot, double height, random_stream *r)
+{
+    obj_material(w, "bark_wood");
+    tier_write(w, &(tier){height * 0.03, height * 0.015, -ROOT_M, height * 0.5}, foot, 6);
+    obj_material(w, "leaves");
+    const double turn = random_unit(r);
+    for (int i = 0; i < 2; ++i) {
+        const double off = height * 0.1, angle = turn + 0.5 * i;
+        model_ball(w, (spot){foot.x + off * turn_cosine(angle), foot.y + height * (0.62 + 0.12 * i), foot.z + off * turn_sine(angle)},
+                   height * (0.2 + 0.05 * random_unit(r)), 10);
+    }
+}
+
 // ---- Rings ----
 
 typedef struct torus { double radius, tube; } torus;

@@ -15,5 +15,7 @@ void model_vase(obj_writer *w, spot foot, double height, uint32_t kind);  // kin
 void model_pot(obj_writer *w, spot foot, double height, uint32_t kind);   // a vase of fewer triangles
 void model_lamp(obj_writer *w, spot foot, double height);
 void model_tree(obj_writer *w, spot foot, double height, random_stream *r); // sets its own materials
+void model_conifer(obj_writer *w, spot foot, double height, random_stream *r);   // 112 triangles, for woods; as all here sets its materials
+void model_broadleaf(obj_writer *w, spot foot, double height, random_stream *r); // 192
 
 #endif

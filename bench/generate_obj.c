@@ -115,6 +115,7 @@ void obj_polygon(obj_writer *w, const place *corners, uint32_t count)
     for (uint32_t i = 0; i < count; ++i)
         if (!place_equal(corners[i], corners[(i + 1) % count])) vertices[kept++] = vertex_of(w, corners[i]);
     if (kept < 3 || w->out->failed) return;
+    w->triangle_count += kept - 2;
     text_add(w->out, "f");
     for (uint32_t i = 0; i < kept; ++i) {
         text_add(w->out, " ");

@@ -15,6 +15,7 @@ typedef struct obj_writer {
     const allocator *memory;
     obj_slot *slots; // places of the current object, open addressing
     uint32_t slot_count, used, vertex_count, object_count;
+    uint64_t triangle_count; // written; a polygon of n corners is n - 2 of them
     const char *material;
 } obj_writer;
 

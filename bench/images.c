@@ -82,20 +82,26 @@ result picture_of(strategy *s, truth *t, const picture_request *q, report *r, ui
     return done;
 }
 
-static result write_picture(strategy *s, truth *t, const char *name, const picture_request *q, report *r)
+result image_write(const bench_request *q, const image_name *name, const uint8_t *rgba, report *r)
 {
     char path[PATH_BYTES], file[NAME_BYTES];
     size_t used = 0;
-    for (; name[used] && used + 1 < sizeof file; ++used) file[used] = isalnum((unsigned char)name[used]) || name[used] == '-' ? name[used] : '_';
+    for (const char *c = name->strategy; *c && used + 1 < sizeof file; ++c, ++used) file[used] = isalnum((unsigned char)*c) || *c == '-' ? *c : '_';
     file[used] = 0;
-    const int length = snprintf(path, sizeof path, "%s/%s-%s-%u.png", s->q->images, file, q->kind == PICTURE_ERROR ? "missed" : "view", q->view);
-    if (length < 0 || (size_t)length >= sizeof path) return report_error(r, s->q->images, 0, "the folder's name is too long");
+    const int length = snprintf(path, sizeof path, "%s/%s-%s-%u.png", q->images, file, name->kind, name->view);
+    if (length < 0 || (size_t)length >= sizeof path) return report_error(r, q->images, 0, "the folder's name is too long");
+    return png_write(path, rgba, q->width_px, q->height_px, r);
+}
+
+static result write_picture(strategy *s, truth *t, const char *name, const picture_request *q, report *r)
+{
+    const image_name file = {name, q->kind == PICTURE_ERROR ? "missed" : "view", q->view};
     const size_t bytes = (size_t)s->q->width_px * s->q->height_px * 4;
     uint8_t *rgba = memory_alloc(s->q->services->memory, bytes, 1);
     if (!rgba) return report_no_memory(r, NULL);
     uint64_t missed;
     result done = picture_of(s, t, q, r, rgba, &missed);
-    if (done == RESULT_OK) done = png_write(path, rgba, s->q->width_px, s->q->height_px, r);
+    if (done == RESULT_OK) done = image_write(s->q, &file, rgba, r);
     memory_free(s->q->services->memory, rgba, bytes, 1);
     return done;
 }

@@ -15,6 +15,12 @@ typedef struct picture_request {
     picture_caption caption;
 } picture_request;
 
+typedef struct image_name {
+    const char *strategy, *kind; // any text; a word such as "view"
+    uint32_t view;
+} image_name;
+// A picture of the bench's size, top row first, as STRATEGY-KIND-VIEW.png in the folder of its images.
+result image_write(const bench_request *q, const image_name *name, const uint8_t *rgba, report *r);
 // Culls and draws one view into rgba (width * height * 4, top row first). The strategy must have a renderer. t may be
 // NULL but for PICTURE_ERROR. *out_missed: pixels in magenta.
 result picture_of(strategy *s, truth *t, const picture_request *q, report *r, uint8_t *rgba, uint64_t *out_missed);

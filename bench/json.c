@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "bench.h"
 #include "commit.h"
+#include "json_entry.h"
 #include "json_text.h"
 
 #include <jansson.h>
@@ -49,7 +50,7 @@ static json_t *context_of(const bench_result *b, const bench_request *q, const b
     gethostname(host, sizeof host - 1);
     cpu_model(model, sizeof model);
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)q->scene->hash);
-    return json_pack("{s:s, s:o, s:i, s:o, s:o, s:s, s:s, s:s, s:o, s:o, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:o, s:i}", "date", date, "host_name",
+    return json_pack("{s:s, s:o, s:i, s:o, s:o, s:s, s:s, s:s, s:o, s:o, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:o, s:i, s:i}", "date", date, "host_name",
                      json_text(host), "num_cpus", (int)sysconf(_SC_NPROCESSORS_ONLN), "cpu_model", json_text(model), "load_avg", load_average(),
                      "library_version", PORTCULLIS_VERSION, "library_build_type",
 #ifdef NDEBUG
@@ -60,7 +61,7 @@ static json_t *context_of(const bench_result *b, const bench_request *q, const b
                      "commit", PORTCULLIS_COMMIT, "gl_renderer", json_text(b->gl_used ? b->gl_name : "none"), "scene", json_text(labels->scene),
                      "scene_hash", hash, "width_px", (int)q->width_px, "height_px", (int)q->height_px, "samples", (int)q->samples,
                      "repeat", (int)q->repeat, "query_latency", (int)q->query_latency, "zones", (int)b->zones, "portals", (int)b->portals,
-                     "path", json_text(labels->path), "json_schema_version", 1);
+                     "path", json_text(labels->path), "warmup_views", (int)bench_warmup_views(q->path), "json_schema_version", 1);
 }
 
 typedef struct counter { const char *name; double value; } counter;
@@ -101,7 +102,7 @@ static json_t *figures_of(const bench_figures *figures)
     return all;
 }
 
-static json_t *entry_of(const bench_result *b, const bench_request *q, const bench_labels *labels, const bench_row *row)
+json_t *bench_json_entry(const bench_result *b, const bench_request *q, const bench_labels *labels, const bench_row *row)
 {
     json_t *entry = head_of(b, q, labels, row);
     if (!entry) return NULL;
@@ -111,10 +112,11 @@ static json_t *entry_of(const bench_result *b, const bench_request *q, const ben
         {"cull_ns_mean", row->cull_ns_mean}, {"cull_ns_p95", row->cull_ns_p95}, {"cull_ns_p99", row->cull_ns_p99},
         {"portal_merges", (double)row->portal_merges}, {"limits_hit", (double)row->limits_hit}, {"stalls", (double)row->stalls},
         {"movers_drawn", row->movers_drawn}, {"build_ms", row->build_ms}, {"index_bytes", (double)row->index_bytes}, {"queries", row->queries},
-        {"steps", row->steps}, {"zones", row->zones}, {"volumes", row->volumes}, {"crossings", row->crossings}, {"swaps", (double)row->swaps},
+        {"steps", row->steps}, {"refreshes", row->refreshes}, {"picture_bytes", (double)row->picture_bytes}, {"zones", row->zones}, {"volumes", row->volumes}, {"crossings", row->crossings}, {"swaps", (double)row->swaps},
         {"faults", (double)row->faults}, {"plugins_opened", b->plugins_opened}, {"indices_built", row->indices_built}, {"gl_used", b->gl_used}};
     const counter of_gl[] = {
-        {"gl_ms", row->gl_ms}, {"total_ms", row->total_ms}, {"draw_calls", row->draw_calls}, {"state_changes", row->state_changes}};
+        {"gl_ms", row->gl_ms}, {"total_ms", row->total_ms}, {"total_ms_p95", row->total_ms_p95}, {"total_ms_p99", row->total_ms_p99},
+        {"draw_calls", row->draw_calls}, {"state_changes", row->state_changes}};
     const counter of_truth[] = {
         {"polygons_visible", row->polygons_visible}, {"polygons_items", row->polygons_items}, {"items_visible", row->items_visible},
         {"floor", row->floor},
@@ -124,12 +126,18 @@ static json_t *entry_of(const bench_result *b, const bench_request *q, const ben
         {"missed_items", (double)row->missed_items}, {"broken_items", (double)row->broken_items}, {"picture_differs", (double)row->picture_differs},
         {"pictures_compared", row->pictures_compared}, {"missed_pixels_max", (double)row->missed_pixels_max},
         {"movers_visible", row->movers_visible}};
+    const counter of_pictures[] = {
+        {"psnr", row->psnr}, {"ssim", row->has_ssim ? row->ssim : NAN}, {"flip", row->flip}, {"flip_p99", row->flip_p99}, {"flip_max", row->flip_max},
+        {"flip_view", row->flip_view}, {"crack_pixels", (double)row->crack_pixels}, {"crack_inner", (double)row->crack_inner},
+        {"crack_spills", (double)row->crack_spills}, {"crack_view", row->crack_view},
+        {"mover_pixels", (double)row->mover_pixels}, {"mover_pixels_wrong", (double)row->mover_pixels_wrong}, {"pictures_measured", row->pictures_measured}};
     const counter of_movers[] = {{"mover_update_ns", ratio_by(row->mover_update_ns, row->mover_update_ns)}};
     const counter of_swaps[] = {{"swap_ms", ratio_by(row->swap_ms, (double)row->swaps)}};
     const counter last[] = {{"front_walls_only", row->front_walls_only}};
     set_counters(entry, always, sizeof always / sizeof *always, MEASURED);
     set_counters(entry, of_gl, sizeof of_gl / sizeof *of_gl, b->gl_used ? MEASURED : NOT_MEASURED);
     set_counters(entry, of_truth, sizeof of_truth / sizeof *of_truth, q->truth == BENCH_TRUTH ? MEASURED : NOT_MEASURED);
+    set_counters(entry, of_pictures, sizeof of_pictures / sizeof *of_pictures, row->pictures_measured ? MEASURED : NOT_MEASURED);
     set_counters(entry, of_movers, 1, MEASURED);
     set_counters(entry, of_swaps, 1, MEASURED);
     set_counters(entry, last, sizeof last / sizeof *last, MEASURED);
@@ -142,7 +150,7 @@ result bench_json(const bench_result *b, const bench_request *q, const bench_lab
     json_t *benchmarks = json_array(), *context = context_of(b, q, labels);
     json_t *root = benchmarks && context ? json_pack("{s:O, s:O}", "context", context, "benchmarks", benchmarks) : NULL;
     int good = root != NULL;
-    for (uint32_t i = 0; good && i < b->row_count; ++i) good = json_array_append_new(benchmarks, entry_of(b, q, labels, &b->rows[i])) == 0;
+    for (uint32_t i = 0; good && i < b->row_count; ++i) good = json_array_append_new(benchmarks, bench_json_entry(b, q, labels, &b->rows[i])) == 0;
     char *text = good ? json_dumps(root, JSON_INDENT(2)) : NULL;
     json_decref(context);
     json_decref(benchmarks);

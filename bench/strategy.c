@@ -3,6 +3,8 @@
 #define _POSIX_C_SOURCE 200809L
 #include "strategy_parts.h"
 
+#include "../host/render/costs.h"
+
 #include <math.h>
 #include <string.h>
 #include <time.h>
@@ -24,10 +26,11 @@ static int open_arrays(strategy *s)
     s->words = (sc->item_count + sc->mover_count + 31) / 32;
     s->drawn_bits = memory_alloc_zeroed(memory, s->words, sizeof(uint32_t));
     s->picture_bits = memory_alloc_zeroed(memory, s->words, sizeof(uint32_t));
+    s->clipped_bits = memory_alloc_zeroed(memory, s->words, sizeof(uint32_t));
     s->cull_ns = memory_alloc_zeroed(memory, samples, sizeof(double));
     s->gl_ms = memory_alloc_zeroed(memory, samples, sizeof(double));
     s->missed = memory_alloc_zeroed(memory, s->q->path->count, sizeof(uint64_t));
-    if (!s->drawn_bits || !s->picture_bits || !s->cull_ns || !s->gl_ms || !s->missed || !blame_open(s)) return 0;
+    if (!s->drawn_bits || !s->picture_bits || !s->clipped_bits || !s->cull_ns || !s->gl_ms || !s->missed || !blame_open(s)) return 0;
     if (s->q->ids == BENCH_IDS) {
         s->ids = memory_alloc_zeroed(memory, (size_t)sc->item_count + RUNS_OVERWRITE, sizeof(uint32_t));
         if (!s->ids) return 0;
@@ -57,6 +60,16 @@ result strategy_open(const bench_request *q, const bench_strategy_request *chain
     return done;
 }
 
+// What cullers weigh pictures by; measured once a renderer and scene.
+static result tell_costs(const strategy *s, report *r)
+{
+    cull_costs costs = s->q->services->costs;
+    if (s->q->costs == BENCH_COSTS_FIXED) return RESULT_OK;
+    const result done = renderer_costs(s->g, r, &costs);
+    if (done == RESULT_OK) host_costs_set(s->q->services, &costs);
+    return done;
+}
+
 result strategy_attach(strategy *s, renderer *g, report *r)
 {
     const allocator *memory = s->q->services->memory;
@@ -68,8 +81,9 @@ result strategy_attach(strategy *s, renderer *g, report *r)
     memory_free(memory, zones, zone_count, sizeof *zones);
     if (done != RESULT_OK) return done;
     s->g = g;
-    const result told = chains_tell_pieces(s, r);
-    return told == RESULT_OK ? chains_tell_slots(s, r) : told;
+    done = chains_tell_pieces(s, r);
+    if (done == RESULT_OK) done = chains_tell_slots(s, r);
+    return done == RESULT_OK && s->has_pictures ? tell_costs(s, r) : done;
 }
 
 result strategy_restart(strategy *s, report *r)
@@ -105,6 +119,7 @@ void strategy_close(strategy *s)
     buffer_free(&s->draw_runs);
     memory_free(memory, s->drawn_bits, s->words, sizeof(uint32_t));
     memory_free(memory, s->picture_bits, s->words, sizeof(uint32_t));
+    memory_free(memory, s->clipped_bits, s->words, sizeof(uint32_t));
     memory_free(memory, s->ids, (size_t)s->q->scene->item_count + RUNS_OVERWRITE, sizeof(uint32_t));
     memory_free(memory, s->cull_ns, samples, sizeof(double));
     memory_free(memory, s->gl_ms, samples, sizeof(double));
@@ -161,7 +176,11 @@ static result prepare_view(strategy *s, const strategy_request *w, report *r)
     if (done != RESULT_OK) return done;
     move_movers(s, w->view);
     if (w->marks == MARK_DRAWN) memset(s->drawn_bits, 0, s->words * sizeof(uint32_t));
-    if (w->marks == MARK_DRAWN && s->has_pictures) memset(s->picture_bits, 0, s->words * sizeof(uint32_t));
+    if (w->marks == MARK_DRAWN && s->has_pictures) {
+        memset(s->picture_bits, 0, s->words * sizeof(uint32_t));
+        memset(s->clipped_bits, 0, s->words * sizeof(uint32_t));
+    }
+    s->again_polygons = s->again_triangles = 0;
     s->marks = w->marks;
     s->records = w->records;
     s->draws.count = s->draw_runs.count = 0;
@@ -191,6 +210,7 @@ result strategy_run_view(strategy *s, const strategy_request *w, report *r, stra
         out->gl_ms = ms > 0 ? ms : 0;
         out->draw_calls = renderer_draw_calls(s->g);
         out->state_changes = renderer_state_changes(s->g);
+        out->picture_bytes = s->has_pictures ? render_layout_picture_counts(s->layout).bytes_peak : 0;
     }
     if (s->ids) {
         const double ns = set_write_ids(s, &out->set) - world_view_clock_overhead_ns(s->view);

@@ -45,6 +45,8 @@ typedef struct strategy {
     uint32_t *order;        // global id at each place, zone after zone, padded for runs_kernel.expand
     uint32_t *drawn_bits;   // D by global id, movers too; also what stands only in a picture
     uint32_t *picture_bits; // what stands in pictures of the current view, by global id
+    uint32_t *clipped_bits; // what was drawn clipped
+    uint64_t again_polygons, again_triangles; // of items drawn clipped, more than once
     uint32_t *ids;          // for BENCH_IDS
     const runs_kernel *kernel;
     walls walls;            // which truth judges it
@@ -91,6 +93,7 @@ typedef struct strategy_view {
     frame_stats stats;
     visible_set set;
     double gl_ms;
+    uint64_t picture_bytes; // of the slots' pictures, the most so far
     uint32_t draw_calls, state_changes, faults; // faults: of the frame, and what only the bench can see
 } strategy_view;
 result strategy_run_view(strategy *s, const strategy_request *w, report *r, strategy_view *out);

@@ -81,7 +81,10 @@ static result take_chain(strategy *s, uint32_t zone, report *r)
     world_order(s->world, zone, s->order + z->first);
     z->is_identity = !c->order && !world_zone(s->world, zone)->items;
     s->uses_renderer |= c->uses_renderer;
-    for (uint32_t i = 0; i < c->stage_count; ++i) s->may_step |= c->stages[i].built.max_steps > 1;
+    for (uint32_t i = 0; i < c->stage_count; ++i) {
+        s->may_step |= c->stages[i].built.max_steps > 1;
+        s->has_pictures |= c->stages[i].built.max_clipped > 0;
+    }
     return take_slots(s, z, slots_of(c), r);
 }
 

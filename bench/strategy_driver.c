@@ -30,6 +30,36 @@ static void drive_draw_movers(void *user, const uint32_t *movers, uint32_t count
     for (uint32_t i = 0; i < count; ++i) record(s, SCENE_NONE, &(cull_run){movers[i], 1}, 1);
 }
 
+static void note_clipped(strategy *s, const strategy_zone *z, const cull_clipped *c)
+{
+    const uint32_t *order = s->order + z->first;
+    for (uint32_t i = 0; i < c->run_count; ++i)
+        for (uint32_t at = c->runs[i].first; at < c->runs[i].first + c->runs[i].count; ++at) {
+            const uint32_t item = order[at], bit = 1u << (item % 32);
+            const scene_item *drawn = &s->q->scene->items[item];
+            const uint32_t again = (s->clipped_bits[item / 32] & bit) != 0; // the first time it counts as the rest of D
+            s->again_polygons += again ? drawn->polygon_count : 0;
+            s->again_triangles += again ? drawn->index_count / 3 : 0;
+            s->clipped_bits[item / 32] |= bit;
+        }
+}
+
+static void drive_draw_clipped(void *user, uint32_t zone, const cull_clipped *clipped, uint32_t count)
+{
+    strategy *s = user;
+    for (uint32_t i = 0; i < count; ++i) {
+        renderer_draw_clipped(s->g, s->layout, zone, &clipped[i]);
+        record(s, zone, clipped[i].runs, clipped[i].run_count);
+        if (s->marks == MARK_DRAWN) note_clipped(s, &s->zones[zone], &clipped[i]);
+    }
+}
+
+static void drive_check_slots(void *user, uint32_t zone, uint8_t *slots, uint32_t count)
+{
+    strategy *s = user;
+    renderer_check_slots(s->g, s->layout, zone, slots, count);
+}
+
 static uint32_t run_end(const strategy_zone *z, cull_run run)
 {
     const uint32_t end = run.first + run.count;
@@ -95,5 +125,5 @@ static uint32_t drive_collect(void *user, uint32_t zone, collect_how how, uint32
 frame_driver driver_of(strategy *s)
 {
     if (!s->g) return (frame_driver){0};
-    return (frame_driver){s, drive_draw, drive_draw_movers, drive_capture, drive_show, drive_test, drive_collect};
+    return (frame_driver){s, drive_draw, drive_draw_movers, drive_capture, drive_show, drive_test, drive_collect, drive_draw_clipped, drive_check_slots};
 }

@@ -38,7 +38,7 @@ void set_mark(strategy *s, const visible_set *set)
         if (set->movers[i] < sc->mover_count) mark_item(s, sc->item_count + set->movers[i]);
         else s->repeats++; // none of the scene's
     }
-    for (uint32_t w = 0; s->has_pictures && w < s->words; ++w) s->drawn_bits[w] |= s->picture_bits[w];
+    for (uint32_t w = 0; s->has_pictures && w < s->words; ++w) s->drawn_bits[w] |= s->picture_bits[w] | s->clipped_bits[w];
 }
 
 // Zones whose ids there is room for: all, unless some stand twice. Outside the time: no culler needs it.
@@ -68,7 +68,7 @@ double set_write_ids(strategy *s, const visible_set *set)
 view_counts strategy_count(const strategy *s, const visible_set *set)
 {
     const scene *sc = s->q->scene;
-    view_counts c = {0};
+    view_counts c = {.polygons = s->again_polygons, .triangles = s->again_triangles};
     for (uint32_t i = 0; i < set->zone_count; ++i) c.runs += set->zones[i].run_count;
     for (uint32_t w = 0; w < s->words; ++w)
         for (uint32_t bits = s->drawn_bits[w]; bits; bits &= bits - 1) {

@@ -49,7 +49,7 @@ typedef struct columns {
     int name_width;
     bench_truth truth;
     uint32_t gl_used;
-    uint32_t has_zones, has_motion; // more than one zone; movers on paths
+    uint32_t has_zones, has_motion, has_pictures; // more than one zone; movers on paths; a row beside full geometry
 } columns;
 
 static columns columns_of(const bench_result *b, const bench_request *q)
@@ -58,6 +58,7 @@ static columns columns_of(const bench_result *b, const bench_request *q)
     for (uint32_t i = 0; i < b->row_count; ++i) {
         const int length = (int)strlen(b->rows[i].name);
         c.name_width = length > c.name_width ? length : c.name_width;
+        c.has_pictures |= b->rows[i].pictures_measured;
         c.has_motion |= b->rows[i].mover_update_ns > 0;
     }
     return c;
@@ -69,6 +70,8 @@ static int put_head(buffer *text, const columns *c)
     if (c->has_zones) good = good && put(text, " %8s %8s %9s %7s", "zones", "volumes", "crossings", "merges");
     if (c->has_motion) good = good && put(text, " %9s", "a mover");
     if (c->gl_used) good = good && put(text, " %9s %9s", "gl ms", "total ms");
+    if (c->has_pictures)
+        good = good && put(text, " %9s %9s %9s %9s %6s %6s %6s %7s %7s", "total p95", "total p99", "refreshes", "pictures", "PSNR", "SSIM", "FLIP", "p99", "cracks");
     if (c->truth == BENCH_TRUTH) good = good && put(text, " %8s %7s %9s %7s", "visible", "excess", "missed px", "items");
     return good && put(text, "\n");
 }
@@ -77,6 +80,22 @@ static int put_marks(buffer *text, const bench_row *row)
 {
     const char *check = row->picture_differs ? "DRAWN WRONG" : bench_check_failed(row) ? "FAILED" : row->faults ? "faults" : "";
     return put(text, "  %s%s%s\n", check, *check && row->front_walls_only ? " " : "", row->front_walls_only ? "front walls" : "");
+}
+
+static const char *short_bytes(uint64_t bytes, char out[16])
+{
+    if (bytes >= 1u << 20) snprintf(out, 16, "%.2f MB", (double)bytes / (1u << 20));
+    else snprintf(out, 16, "%.1f KB", (double)bytes / (1u << 10));
+    return out;
+}
+
+static int put_pictures(buffer *text, const bench_row *row)
+{
+    char bytes[16], ssim[16] = "-";
+    int good = put(text, " %9.2f %9.2f %9.2f %9s", row->total_ms_p95, row->total_ms_p99, row->refreshes, short_bytes(row->picture_bytes, bytes));
+    if (row->has_ssim) snprintf(ssim, sizeof ssim, "%.4f", row->ssim);
+    if (!row->pictures_measured) return good && put(text, " %6s %6s %6s %7s %7s", "-", "-", "-", "-", "-");
+    return good && put(text, " %6.2f %6s %6.4f %7.4f %7llu", row->psnr, ssim, row->flip, row->flip_p99, (unsigned long long)row->crack_pixels);
 }
 
 static int put_row(buffer *text, const bench_row *row, const columns *c)
@@ -89,6 +108,7 @@ static int put_row(buffer *text, const bench_row *row, const columns *c)
                            short_count(row->crossings, n[7]), short_count((double)row->portal_merges, n[8]));
     if (c->has_motion) good = good && put(text, " %9s", short_time(row->mover_update_ns, t[2]));
     if (c->gl_used) good = good && put(text, " %9.2f %9.2f", row->gl_ms, row->total_ms);
+    if (c->has_pictures) good = good && put_pictures(text, row);
     if (c->truth == BENCH_TRUTH)
         good = good && put(text, " %8s %7s %9llu %7llu", short_count(row->polygons_visible, n[3]), short_excess(row, n[4]),
                            (unsigned long long)row->missed_pixels, (unsigned long long)row->missed_items);

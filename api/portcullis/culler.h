@@ -156,6 +156,7 @@ typedef struct cull_answer {
 
 typedef struct cull_capture cull_capture;
 typedef struct cull_picture cull_picture;
+typedef struct cull_clipped cull_clipped;
 
 typedef struct cull_visit {
     const cull_view *view;
@@ -168,9 +169,12 @@ typedef struct cull_visit {
     const cull_mover *movers;   // for who takes_movers: to be kept or dropped like items
     const cull_answer *answers; // to any earlier tests of this query; not sorted; at most 2 * max_tests + 1. After
                                 // CULL_WAIT every answer to that step's tests is here: older ones give way to them
-    const uint8_t *slots;       // per picture slot: 1 holds the last capture, 0 empty. May change to 0 at any frame
+    const cull_clipped *clipped; // filter: clipped items of the culler before, see cull_batch.keep_clipped. Who walks the lent hierarchy
+                                 // leaves out those kept too; one that is given all the same is only drawn twice
+    const uint8_t *slots;       // per picture slot: 1 holds the last capture, 0 empty. May change to 0 at any frame: where memory
+                                // ran short, something in the capture's box changed, or the last capture was not carried out
     void *scratch;              // cull_built.scratch_size bytes, 64-byte aligned, of undefined content
-    uint32_t volume_count, candidate_count, picture_count, capture_count, mover_count, answer_count;
+    uint32_t volume_count, candidate_count, picture_count, capture_count, mover_count, answer_count, clipped_count;
     uint32_t step;              // 0 in the first step of a frame
     uint32_t reserved;
 } cull_visit;
@@ -183,7 +187,7 @@ typedef struct cull_visit {
 // of a later frame, age >= 1. So are tests given with CULL_MORE that no step of their frame got the answer to.
 typedef struct cull_test { cull_box box; uint32_t tag, reserved; } cull_test;
 
-// "Take a picture of these items from the view's eye." Pixel (u, v) in [0,1]^2 looks along corner + u*right + v*up - eye.
+// "Take a picture of these items from this eye." Pixel (u, v) in [0,1]^2 looks along corner + u*right + v*up - eye.
 // The same parallelogram is what a cull_picture of the slot later shows, so turning the view costs no error.
 struct cull_capture {
     const cull_run *runs;      // the culler's or query's, valid until the next step
@@ -193,7 +197,10 @@ struct cull_capture {
     cull_vec3 corner, right, up;
     uint32_t run_count, slot_count, clip_plane_count;
     uint32_t slot, width_px, height_px;
-    uint32_t keep_depth; // 1: the slot keeps depth, so that a picture shown writes it, re-projected
+    uint32_t keep_depth; // 1: the slot keeps depth, so that a picture shown writes it, re-projected. 0: it stands behind all
+                         // that has depth, and of several such pictures of a frame the one shown first stands in front
+    cull_vec3 eye;         // where eye_is_said: what it is taken from, such as where the view's eye will be in some frames
+    uint32_t eye_is_said;  // 0: from the view's eye
 };
 
 // "Show slot instead of these items." Allowed while visit.slots[slot] is 1, or once captured in this step or before.
@@ -205,8 +212,17 @@ struct cull_picture {
     uint32_t reserved;
 };
 
-// runs and pictures are appended to over the steps of a frame, tests and captures start at 0 in each step.
-// After a step the host does, in this order: new runs, captures one by one, new pictures, tests. What is drawn stays
+// "Draw these items clipped to what lies inside all planes": geometry that meets a picture at a seam. An item may stand in
+// several of a frame, once in each, but then in no run of the culler: it is drawn, and counts, once for each. No movers.
+struct cull_clipped {
+    const cull_run *runs; // the culler's or query's, valid until the next step
+    cull_box box;         // of what it shows, for a filter
+    cull_plane planes[4];
+    uint32_t run_count, plane_count;
+};
+
+// runs, clipped and pictures are appended to over the steps of a frame, tests and captures start at 0 in each step.
+// After a step the host does, in this order: new runs, new clipped, captures one by one, new pictures, tests. What is drawn stays
 // drawn: runs of earlier steps may not be taken back, and writing over them changes nothing.
 // The pointers are the host's and stay: one that is replaced is a fault, and counts are looked at before lists.
 // A slot is a number of the one culler of a chain that has slots; a chain with two such cullers is refused.
@@ -221,6 +237,9 @@ typedef struct cull_batch {
     uint32_t run_count, picture_count, test_count, capture_count;
     uint32_t nodes_visited; // for the bench, added to
     uint32_t limits_hit;    // for the bench, added to: times a limit made this culler draw more
+    cull_clipped *clipped;  // room for max_clipped
+    uint8_t *keep_clipped;  // filter: as keep_pictures, for clipped items
+    uint32_t clipped_count, reserved;
 } cull_batch;
 
 typedef int32_t cull_progress;
@@ -278,6 +297,8 @@ typedef struct cull_built {
     uint32_t walks_hierarchy; // filter: 1 walks the lent hierarchy, so the host runs no select but one that has pictures,
                               // and no filter between; 0 takes candidates
     uint32_t takes_movers;    // last of select and filters: 1 decides about movers too; 0 the host draws them
+    uint32_t max_clipped;     // in one frame
+    uint32_t reserved;
 } cull_built;
 
 // The key `backface` is reserved: a select's, "1": drops walls that are not TWO_SIDED and show only their back to the
@@ -335,6 +356,24 @@ typedef struct cull_bake {
 // Where build refuses it with CULL_ERR_BLOB, the host warns, destroys the culler, and builds one anew that is lent none.
 #define CULL_EXT_BLOB "cull.blob/1"
 typedef struct cull_blob { const void *bytes; uint64_t size; } cull_blob; // 64-byte aligned, as long as the zone
+
+// Extension "cull.costs/1" of a host (zone NULL): cull_costs, what drawing takes on this machine. Ask [build], read [step]: the numbers
+// stand while a frame lasts, and may be measured anew between two. CPU time, of all threads, in nanoseconds.
+#define CULL_EXT_COSTS "cull.costs/1"
+typedef struct cull_costs {
+    double polygon_ns;             // a triangle inside the picture, however small
+    double pixel_ns;               // a pixel that geometry covers
+    double picture_ns;             // a picture shown, however small
+    double picture_pixel_ns;       // a pixel that a picture shown covers
+    double picture_depth_pixel_ns; // the same, where the slot keeps depth
+    double capture_ns;             // a capture, however small
+    double capture_pixel_ns;       // a pixel of a capture, beside what its items take as in a frame
+    double frame_ns;               // what a frame may take, pictures and all; 0: nobody said
+    uint64_t picture_bytes;        // what the pictures of all zones and views may take together; beyond it slots are emptied
+    uint32_t pixel_bytes, depth_pixel_bytes; // of those, what a pixel of a slot takes; where it keeps depth
+    uint32_t is_measured;          // 0: fixed numbers, the same on every machine
+    uint32_t reserved;
+} cull_costs;
 
 // Extension "cull.explain/1" of a built culler: why an item is kept or dropped, one line of text for a person.
 #define CULL_EXT_EXPLAIN "cull.explain/1"

@@ -55,6 +55,28 @@ static inline bool cull_volume_contains(const cull_volume *volume, cull_box box)
     return true;
 }
 
+// For who explains: how a box stands in the volume that comes nearest to keeping it, and the plane that holds it off most there.
+typedef struct cull_standing {
+    float height; // of the box's innermost corner over that plane, metres; below 0: outside of every volume
+    uint32_t volume, plane;
+} cull_standing;
+static inline cull_standing cull_standing_of(const cull_volume *volumes, uint32_t count, cull_box box)
+{
+    cull_standing best = {-INFINITY, 0, 0};
+    for (uint32_t v = 0; v < count; v++) {
+        cull_standing worst = {INFINITY, v, 0};
+        for (uint32_t k = 0; k < volumes[v].plane_count; k++) {
+            const cull_plane p = volumes[v].planes[k];
+            const float height = cull_plane_height(p, cull_box_corner(box, p.normal));
+            if (!(height < worst.height)) continue;
+            worst.height = height;
+            worst.plane = k;
+        }
+        if (worst.height > best.height) best = worst;
+    }
+    return best;
+}
+
 // ---- The guard band: the only distances by which anything is moved "to be safe" ----
 
 #define CULL_GUARD_PX (1.0 / 64)                // side planes move out by this many pixels: rasterizers snap vertices

@@ -27,6 +27,9 @@ enum {
     KEY_LATENCY,
     KEY_SAMPLES,
     KEY_JSON,
+    KEY_CSV,
+    KEY_PICTURES,
+    KEY_NO_PICTURES,
     KEY_NO_MOVERS,
     KEY_PLUGIN
 };
@@ -34,7 +37,7 @@ enum {
 typedef enum movers_choice { MOVERS_DRAWN, MOVERS_AWAY } movers_choice;
 
 typedef struct arguments {
-    const char *scene, *views, *images, *json;
+    const char *scene, *views, *images, *json, *csv;
     const char *cullers[STRATEGIES_MOST];
     zone_options zones;
     uint32_t culler_count, swap, repeat, latency, samples;
@@ -42,6 +45,7 @@ typedef struct arguments {
     doors_choice doors;
     bench_truth truth;
     bench_ids ids;
+    bench_pictures pictures;
     movers_choice movers;
     app_plugin_files plugins;
 } arguments;
@@ -63,9 +67,15 @@ static const struct argp_option options[] = {
     {"ids", KEY_IDS, NULL, 0, "writing the id of every drawn item counts as culling", 0},
     {"doors", KEY_DOORS, "open|shut|scene", 0, "how doors stand (default open; scene: as its file says)", 0},
     {"no-movers", KEY_NO_MOVERS, NULL, 0, "doors' leaves and all else that moves taken away: what stands still is not hidden by them", 0},
-    {"images", KEY_IMAGES, "DIR", 0, "write a picture of each strategy, and of its worst view", 0},
+    {"pictures", KEY_PICTURES, NULL, 0, "PSNR, SSIM, FLIP and crack pixels of every strategy beside full geometry (default: of those that show pictures)", 0},
+    {"no-pictures", KEY_NO_PICTURES, NULL, 0, "of none", 0},
+    {"images", KEY_IMAGES, "DIR", 0,
+     "write a picture of each strategy, and of its worst view; where pictures are compared, of the view with the largest FLIP what is true, what is shown, and the "
+     "differences, with cracks in cyan",
+     0},
     {"query-latency", KEY_LATENCY, "L", 0, "an answer is readable L steps later (default 0)", 0},
     {"json", KEY_JSON, "FILE|-", 0, "results in Google Benchmark's shape", 0},
+    {"csv", KEY_CSV, "FILE|-", 0, "results as CSV, a line a strategy", 0},
     {"plugin", KEY_PLUGIN, "FILE", 0, "look at this library first; may stand several times", 0},
     {0},
 };
@@ -100,6 +110,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_IDS: a->ids = BENCH_IDS; break;
     case KEY_IMAGES: a->images = text; break;
     case KEY_JSON: a->json = text; break;
+    case KEY_CSV: a->csv = text; break;
+    case KEY_PICTURES: a->pictures = BENCH_PICTURES_ALL; break;
+    case KEY_NO_PICTURES: a->pictures = BENCH_PICTURES_NONE; break;
     case KEY_SIZE:
     case KEY_REPEAT:
     case KEY_LATENCY:
@@ -116,6 +129,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
         if (a->images && a->samples > 1) argp_error(state, "--images shows pixels: leave --samples out");
         if (a->size.width_px * a->samples > APP_SIDE_MOST || a->size.height_px * a->samples > APP_SIDE_MOST)
             argp_error(state, "--size times --samples is over %d: a picture of %d x %d samples is the largest", APP_SIDE_MOST, APP_SIDE_MOST, APP_SIDE_MOST);
+        if (a->json && a->csv && strcmp(a->json, "-") == 0 && strcmp(a->csv, "-") == 0) argp_error(state, "--json and --csv can't both go to stdout: name a file");
         if (!a->views) argp_error(state, "--views is missing; name a .views file, auto:N, auto:walk:N, auto:edges:N or path:NAME");
         if (a->swap && a->culler_count < 2) argp_error(state, "--swap needs two or more --culler to go through");
         if (a->swap && a->culler_count == STRATEGIES_MOST) argp_error(state, "too many of one option");
@@ -130,32 +144,46 @@ static void print_text(const bench_text *text, FILE *to)
     fwrite(text->bytes, 1, text->size, to);
 }
 
-static result write_json(app *a, const char *file, const bench_text *text)
+static result write_text(app *a, const char *file, const bench_text *text)
 {
     if (strcmp(file, "-") != 0) return file_write(file, text->bytes, text->size, &a->report);
     print_text(text, stdout);
-    printf("\n");
+    if (text->size && text->bytes[text->size - 1] != '\n') printf("\n");
     return RESULT_OK;
 }
 
 typedef struct output {
     const bench_request *bench;
     const bench_labels *labels;
-    const char *json; // file, "-" or NULL
+    const char *json, *csv; // files, "-" or NULL
 } output;
 
-// The table is for people where JSON goes to stdout.
+static int is_stdout(const char *file)
+{
+    return file && strcmp(file, "-") == 0;
+}
+
+typedef result (*text_maker)(const bench_result *b, const bench_request *q, const bench_labels *labels, bench_text *out);
+
+static result write_made(app *a, const output *o, const bench_result *b, text_maker make, const char *file)
+{
+    bench_text text;
+    if (!file) return RESULT_OK;
+    if (make(b, o->bench, o->labels, &text) != RESULT_OK) return report_no_memory(&a->report, NULL);
+    const result done = write_text(a, file, &text);
+    memory_free(a->memory, text.bytes, text.size + 1, 1);
+    return done;
+}
+
+// The table is for people where other results go to stdout.
 static result write_results(app *a, const output *o, const bench_result *b)
 {
     bench_text text;
     if (bench_table(b, o->bench, o->labels, &text) != RESULT_OK) return report_no_memory(&a->report, NULL);
-    print_text(&text, o->json && strcmp(o->json, "-") == 0 ? stderr : stdout);
+    print_text(&text, is_stdout(o->json) || is_stdout(o->csv) ? stderr : stdout);
     memory_free(a->memory, text.bytes, text.size + 1, 1);
-    if (!o->json) return RESULT_OK;
-    if (bench_json(b, o->bench, o->labels, &text) != RESULT_OK) return report_no_memory(&a->report, NULL);
-    const result done = write_json(a, o->json, &text);
-    memory_free(a->memory, text.bytes, text.size + 1, 1);
-    return done;
+    const result done = write_made(a, o, b, bench_json, o->json);
+    return done == RESULT_OK ? write_made(a, o, b, bench_csv, o->csv) : done;
 }
 
 static uint32_t tell_failures(app *a, const arguments *q, const bench_result *b)
@@ -199,14 +227,15 @@ static result run_bench(app *a, const arguments *q, const camera_path *path, uin
     const bench_request bench = {.scene = a->scene, .path = path, .strategies = strategies, .doors = app_doors_of(&q->doors),
                                  .plugins = a->plugins, .services = &a->services,
                                  .strategy_count = count, .width_px = q->size.width_px, .height_px = q->size.height_px, .repeat = q->repeat,
-                                 .query_latency = q->latency, .samples = q->samples, .truth = q->truth, .ids = q->ids, .images = q->images};
+                                 .query_latency = q->latency, .samples = q->samples, .truth = q->truth, .ids = q->ids, .pictures = q->pictures,
+                                 .images = q->images};
     const bench_labels labels = {scene_label(q->scene, &a->texts), path->name};
     if (!labels.scene) return report_no_memory(&a->report, NULL);
     bench_result results;
     done = bench_run(&bench, &a->report, &results);
     if (done != RESULT_OK && q->images) (void)rmdir(q->images); // leaves it where something is in it
     if (done != RESULT_OK) return done;
-    done = write_results(a, &(output){&bench, &labels, q->json}, &results);
+    done = write_results(a, &(output){&bench, &labels, q->json, q->csv}, &results);
     *failed = tell_failures(a, q, &results);
     bench_result_free(&results);
     return done;
@@ -216,7 +245,8 @@ static result run_bench(app *a, const arguments *q, const camera_path *path, uin
 static result check_early(app *a, const arguments *q)
 {
     result done = chains_check(a, q->cullers, q->culler_count, &q->zones);
-    if (done == RESULT_OK && q->json && strcmp(q->json, "-") != 0) done = file_can_write(q->json, &a->report);
+    if (done == RESULT_OK && q->json && !is_stdout(q->json)) done = file_can_write(q->json, &a->report);
+    if (done == RESULT_OK && q->csv && !is_stdout(q->csv)) done = file_can_write(q->csv, &a->report);
     return done;
 }
 

@@ -60,13 +60,13 @@ static error_t parse(int key, char *text, struct argp_state *state)
     return 0;
 }
 
-static result write_views(const camera_path *path, const arguments *q, app *a)
+static result write_views(const camera_path *path, const char *out, report *r)
 {
     char *text;
     size_t size;
-    if (camera_path_text(path, a->memory, &text, &size) != RESULT_OK) return report_no_memory(&a->report, q->out);
-    const result done = file_write(q->out, text, size, &a->report);
-    memory_free(a->memory, text, size + 1, 1);
+    if (camera_path_text(path, allocator_heap(), &text, &size) != RESULT_OK) return report_no_memory(r, out);
+    const result done = file_write(out, text, size, r);
+    memory_free(allocator_heap(), text, size + 1, 1);
     return done;
 }
 
@@ -74,14 +74,14 @@ static int generate_views(const arguments *q)
 {
     static const double aspect = 16.0 / 9;
     const import_options import = {.doors = DOORS_OPEN};
-    app a;
+    report r = report_to_stderr();
+    scene *loaded = NULL;
     camera_path path = {0};
-    result done = app_open(&a, NULL);
-    if (done == RESULT_OK) done = import_scene(q->scene, &import, a.memory, &a.report, &a.scene);
-    if (done == RESULT_OK) done = camera_path_load(q->views, a.scene, aspect, a.memory, &a.report, &path);
-    if (done == RESULT_OK) done = write_views(&path, q, &a);
-    if (path.cameras) camera_path_free(&path, a.memory);
-    app_close(&a);
+    result done = import_scene(q->scene, &import, allocator_heap(), &r, &loaded);
+    if (done == RESULT_OK) done = camera_path_load(q->views, loaded, aspect, allocator_heap(), &r, &path);
+    if (done == RESULT_OK) done = write_views(&path, q->out, &r);
+    if (path.cameras) camera_path_free(&path, allocator_heap());
+    scene_free(loaded, allocator_heap());
     return app_exit_code(done);
 }
 

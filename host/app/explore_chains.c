@@ -3,6 +3,8 @@
 // Invariant: the layout holds a zone in the order of its chain, or e->failure is set and nothing is drawn any more.
 #include "explore.h"
 
+#include "../render/costs.h"
+
 #include "../core/pieces.h"
 
 #include <stdio.h>
@@ -40,8 +42,13 @@ static result tell_slots(explore *e)
         counts[z] = slots_of(world_chain(e->w, z));
         e->has_pictures |= counts[z] != 0;
     }
-    const result done = e->has_pictures ? render_layout_slots(e->layout, counts, &e->a->report) : RESULT_OK;
+    cull_costs costs;
+    result done = e->has_pictures ? render_layout_slots(e->layout, counts, &e->a->report) : RESULT_OK;
     memory_free(e->a->memory, counts, zone_count, sizeof *counts);
+    if (done == RESULT_OK && e->has_pictures) {
+        done = renderer_costs(e->g, &e->a->report, &costs);
+        if (done == RESULT_OK) host_costs_set(&e->a->services, &costs);
+    }
     return done;
 }
 

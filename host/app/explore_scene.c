@@ -45,6 +45,19 @@ static void drive_show(void *user, uint32_t zone, const cull_picture *pictures, 
     for (uint32_t i = 0; i < count; ++i) renderer_show(e->g, e->layout, zone, &pictures[i]);
 }
 
+static void drive_draw_clipped(void *user, uint32_t zone, const cull_clipped *clipped, uint32_t count)
+{
+    explore *e = user;
+    tell_rectangles(e);
+    for (uint32_t i = 0; i < count; ++i) renderer_draw_clipped(e->g, e->layout, zone, &clipped[i]);
+}
+
+static void drive_check_slots(void *user, uint32_t zone, uint8_t *slots, uint32_t count)
+{
+    explore *e = user;
+    renderer_check_slots(e->g, e->layout, zone, slots, count);
+}
+
 static void drive_test(void *user, uint32_t zone, const cull_test *tests, uint32_t count, uint32_t frame)
 {
     explore *e = user;
@@ -123,7 +136,7 @@ static void cull_and_draw(explore *e)
 {
     const frame_input q = {.camera = &e->fly,
                            .frame = {.width_px = e->width_px, .height_px = e->height_px, .frame = ++e->frame, .purpose = CULL_VIEW_MAIN},
-                           .driver = {e, drive_draw, drive_movers, drive_capture, drive_show, drive_test, drive_collect}};
+                           .driver = {e, drive_draw, drive_movers, drive_capture, drive_show, drive_test, drive_collect, drive_draw_clipped, drive_check_slots}};
     world_cull(e->v, &q, &e->set, &e->stats);
     e->counters.cull_us = e->stats.cull_ns / 1000;
 }

@@ -12,17 +12,19 @@ static const char *lists_fault(const cull_batch *lent, const cull_batch *batch)
 {
     const int is_lent = batch->runs == lent->runs && batch->pictures == lent->pictures && batch->tests == lent->tests &&
                         batch->captures == lent->captures && batch->keep_pictures == lent->keep_pictures &&
-                        batch->keep_captures == lent->keep_captures;
+                        batch->keep_captures == lent->keep_captures && batch->clipped == lent->clipped && batch->keep_clipped == lent->keep_clipped;
     return is_lent ? NULL : "it replaced a list of the batch";
 }
 
 static const char *counts_fault(const viewer *v, const cull_batch *batch, const batch_check *check)
 {
     const cull_built *b = &v->chain->stages[check->stage].built;
-    if (batch->run_count < check->runs || batch->picture_count < check->pictures) return "it took runs or pictures back";
+    const int takes_back = batch->run_count < check->runs || batch->picture_count < check->pictures || batch->clipped_count < check->clipped;
+    if (takes_back) return "it took runs or pictures back";
     if (batch->run_count > v->stages[check->stage].run_capacity) return "more runs than it told";
     if (batch->test_count > b->max_tests) return "more tests than it told";
     if (batch->capture_count > b->max_captures) return "more captures than it told";
+    if (batch->clipped_count > b->max_clipped) return "more clipped items than it told";
     return batch->picture_count > b->max_pictures ? "more pictures than it told" : NULL;
 }
 
@@ -55,18 +57,46 @@ static const char *runs_fault(const viewer *v, const cull_batch *batch, batch_ch
     return NULL;
 }
 
+// 1: one of the run was marked before.
+static int mark_twice(uint64_t *seen, cull_run run)
+{
+    for (uint32_t i = run.first; i < run.first + run.count; ++i) {
+        if (seen[i / 64] >> (i % 64) & 1) return 1;
+        seen[i / 64] |= (uint64_t)1 << (i % 64);
+    }
+    return 0;
+}
+
+// Once in each: `one` is empty before and after, `clipped` holds those of all.
+static const char *clipped_repeat_fault(const cull_clipped *c, uint64_t *clipped, uint64_t *one)
+{
+    const char *fault = NULL;
+    uint32_t marked = 0;
+    while (!fault && marked < c->run_count)
+        if (mark_twice(one, c->runs[marked++])) fault = "an item given twice";
+    for (uint32_t r = 0; r < marked; ++r)
+        for (uint32_t i = c->runs[r].first; i < c->runs[r].first + c->runs[r].count; ++i) {
+            clipped[i / 64] |= (uint64_t)1 << (i % 64);
+            one[i / 64] &= ~((uint64_t)1 << (i % 64));
+        }
+    return fault;
+}
+
 static const char *repeat_fault(viewer *v, const cull_batch *batch, const batch_check *check)
 {
-    const cull_zone *zone = &v->chain->zone;
-    const size_t bytes = ((size_t)zone->item_count + zone->mover_capacity + 63) / 64 * sizeof(uint64_t);
+    const size_t bytes = viewer_seen_bytes(v->chain, check->stage);
     uint64_t *seen = v->seen.size && check->stage == v->last ? v->seen.items : list_tail(&v->room->seen, bytes);
-    if (check->runs == 0) memset(seen, 0, bytes);
+    if (check->runs == 0 && check->clipped == 0) memset(seen, 0, bytes);
     for (uint32_t r = check->runs; r < batch->run_count; ++r)
-        for (uint32_t i = batch->runs[r].first; i < batch->runs[r].first + batch->runs[r].count; ++i) {
-            if (seen[i / 64] >> (i % 64) & 1) return "an item given twice";
-            seen[i / 64] |= (uint64_t)1 << (i % 64);
-        }
-    return NULL;
+        if (mark_twice(seen, batch->runs[r])) return "an item given twice";
+    if (!batch->clipped_count) return NULL;
+    const size_t words = viewer_seen_words(v->chain);
+    const char *fault = NULL;
+    for (uint32_t i = check->clipped; !fault && i < batch->clipped_count; ++i)
+        fault = clipped_repeat_fault(&batch->clipped[i], seen + words, seen + 2 * words);
+    for (size_t w = 0; !fault && w < words; ++w)
+        if (seen[w] & seen[words + w]) fault = "an item given clipped and whole";
+    return fault;
 }
 
 static int point_is_finite(cull_vec3 p)
@@ -86,12 +116,32 @@ static const char *tests_fault(const cull_batch *batch)
     return NULL;
 }
 
-static const char *lent_runs_fault(const viewer *v, const cull_run *runs, uint32_t count)
+static const char *lent_runs_fault(const viewer *v, const cull_run *runs, uint32_t count, uint64_t *sum)
 {
-    uint64_t sum;
-    if (count && !runs) return "a picture without its runs";
-    if (count > v->chain->zone.item_count) return "a picture of more runs than there are items";
-    return v->kernel->check(runs, count, v->chain->zone.item_count, &sum) ? NULL : "a picture of a run outside the zone";
+    if (count && !runs) return "a picture or a clip without its runs";
+    if (count > v->chain->zone.item_count) return "a picture or a clip of more runs than there are items";
+    return v->kernel->check(runs, count, v->chain->zone.item_count, sum) ? NULL : "a picture or a clip of a run outside the zone";
+}
+
+static const char *planes_fault(const cull_plane *planes, uint32_t count)
+{
+    if (count > 4) return "over 4 clip planes";
+    for (uint32_t i = 0; i < count; ++i)
+        if (!point_is_finite(planes[i].normal) || !isfinite(planes[i].offset)) return "clip planes are not finite";
+    return NULL;
+}
+
+static const char *clipped_fault(const viewer *v, const cull_batch *batch, const batch_check *check)
+{
+    for (uint32_t i = check->clipped; i < batch->clipped_count; ++i) {
+        const cull_clipped *c = &batch->clipped[i];
+        uint64_t sum;
+        const char *fault = box_is_sound(&c->box) ? planes_fault(c->planes, c->plane_count) : "clipped items whose box is not finite or is inside out";
+        if (!fault) fault = lent_runs_fault(v, c->runs, c->run_count, &sum);
+        if (fault) return fault;
+        if (sum > v->chain->zone.item_count) return "an item given twice";
+    }
+    return NULL;
 }
 
 // Captures run in order: one may be composed of what those before it fill, marked as they are checked.
@@ -114,19 +164,20 @@ static const char *capture_fault(const viewer *v, uint32_t slot_count, const cul
     if (c->slot >= slot_count) return "a capture into a slot that is not there";
     if (c->width_px < 1 || c->height_px < 1 || c->width_px > PICTURE_PX_MOST || c->height_px > PICTURE_PX_MOST) return "a capture of no or too many pixels";
     if (!point_is_finite(c->corner) || !point_is_finite(c->right) || !point_is_finite(c->up) || !box_is_sound(&c->box)) return "a capture whose numbers are not finite";
-    if (c->clip_plane_count > 4) return "a capture with over 4 clip planes";
-    for (uint32_t i = 0; i < c->clip_plane_count; ++i)
-        if (!point_is_finite(c->clip_planes[i].normal) || !isfinite(c->clip_planes[i].offset)) return "a capture whose clip planes are not finite";
-    const char *fault = composed_fault(v, c, slot_count);
-    return fault ? fault : lent_runs_fault(v, c->runs, c->run_count);
+    if (c->eye_is_said && !point_is_finite(c->eye)) return "a capture whose numbers are not finite";
+    uint64_t sum;
+    const char *fault = planes_fault(c->clip_planes, c->clip_plane_count);
+    if (!fault) fault = composed_fault(v, c, slot_count);
+    return fault ? fault : lent_runs_fault(v, c->runs, c->run_count, &sum);
 }
 
 static const char *picture_fault(const viewer *v, uint32_t slot_count, const cull_picture *p)
 {
     if (p->slot >= slot_count) return "a picture of a slot that is not there";
     if (!is_filled(v, p->slot)) return "a picture of a slot that is empty";
+    uint64_t sum;
     if (!(p->error_px >= 0) || !isfinite(p->error_px) || !box_is_sound(&p->box)) return "a picture whose numbers are not finite";
-    return lent_runs_fault(v, p->runs, p->run_count);
+    return lent_runs_fault(v, p->runs, p->run_count, &sum);
 }
 
 // Captures first: what they fill the pictures may show.
@@ -150,10 +201,12 @@ const char *batch_fault(viewer *v, const cull_batch *batch, batch_check *check)
     const char *fault = lists_fault(&check->lent, batch);
     if (!fault) fault = counts_fault(v, batch, check);
     if (!fault) fault = runs_fault(v, batch, check);
+    if (!fault) fault = clipped_fault(v, batch, check);
     if (!fault && v->checks == VIEWER_CHECK_ALL) fault = repeat_fault(v, batch, check);
     if (!fault) fault = tests_fault(batch);
     if (!fault) fault = pictures_fault(v, slot_count, batch, check);
     check->runs = batch->run_count;
     check->pictures = batch->picture_count;
+    check->clipped = batch->clipped_count;
     return fault;
 }

@@ -100,7 +100,8 @@ static result built_is_sound(const chain_stage *stage, const cull_hierarchy *len
     const cull_promises may = stage->plugin->descriptor->may_promise;
     const char *fault = NULL;
     if (b->max_steps < 1 || b->max_steps > CULL_MAX_STEPS) fault = "max_steps is not 1 .. 1,000,000";
-    else if (b->max_runs > LIST_MOST || b->max_tests > LIST_MOST || b->max_captures > LIST_MOST || b->max_pictures > LIST_MOST || b->slot_count > LIST_MOST)
+    else if (b->max_runs > LIST_MOST || b->max_tests > LIST_MOST || b->max_captures > LIST_MOST || b->max_pictures > LIST_MOST || b->max_clipped > LIST_MOST ||
+             b->slot_count > LIST_MOST)
         fault = "a capacity is over 2^28";
     else if (b->scratch_size > SCRATCH_BYTES_MOST) fault = "it wants over 4 GiB of scratch";
     else if (b->promises & ~may) fault = "it promises more than its descriptor's may_promise";
@@ -259,7 +260,7 @@ static void chain_sum_up(chain *c)
         const cull_built *b = &c->stages[i].built;
         c->promises &= b->promises & CULL_CONSERVATIVE ? b->promises | CULL_SAMPLED : b->promises; // the stronger holds the weaker
         c->index_bytes += b->index_bytes;
-        c->uses_renderer |= b->max_tests || b->max_captures || b->max_pictures;
+        c->uses_renderer |= b->max_tests || b->max_captures || b->max_pictures || b->max_clipped;
     }
 }
 

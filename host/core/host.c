@@ -3,6 +3,7 @@
 #define _DEFAULT_SOURCE
 #include "host.h"
 
+#include <string.h>
 #include <sys/mman.h>
 
 static const size_t HUGE_PAGE_BYTES = 2 * 1024 * 1024; // x86-64 and AArch64 with 4 KiB pages; elsewhere the advice is just unused
@@ -45,15 +46,24 @@ static void host_parallel_for(const cull_host *host, void (*task)(void *context,
 
 static const void *host_extension(const cull_host *host, const cull_zone *zone, const char *id)
 {
-    (void)host;
-    (void)zone;
-    (void)id;
-    return NULL;
+    return !zone && strcmp(id, CULL_EXT_COSTS) == 0 ? &services_of(host)->costs : NULL;
 }
+
+// Until somebody measures (host/render/costs.c): what a software renderer, llvmpipe, takes on an x86-64 server, rounded.
+static const cull_costs FIXED_COSTS = {.polygon_ns = 250, .pixel_ns = 3, .picture_ns = 1500, .picture_pixel_ns = 6, .picture_depth_pixel_ns = 10,
+                                       .capture_ns = 25000, .capture_pixel_ns = 9, .picture_bytes = 256u << 20, .pixel_bytes = 4,
+                                       .depth_pixel_bytes = 8};
 
 void host_services_fill(host_services *s, const allocator *memory, report *log)
 {
     *s = (host_services){.host = {CULL_ABI, s, host_alloc, host_free, host_log, host_parallel_for, host_extension},
                          .memory = memory,
-                         .log = log};
+                         .log = log,
+                         .costs = FIXED_COSTS};
+}
+
+void host_costs_set(const host_services *s, const cull_costs *costs)
+{
+    host_services *own = s->host.user; // the same, as it was filled: those who use it have it as constant
+    own->costs = *costs;
 }

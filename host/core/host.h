@@ -13,8 +13,12 @@ typedef struct host_services {
     cull_host host; // what plugins get; host.user points back here
     const allocator *memory;
     report *log;
+    cull_costs costs; // that plugins are lent
 } host_services;
 
+// With fixed costs, the same on every machine.
 void host_services_fill(host_services *s, const allocator *memory, report *log);
+// [main, no view being culled] Other costs from now on, for all that were lent the old ones.
+void host_costs_set(const host_services *s, const cull_costs *costs);
 
 #endif

@@ -25,11 +25,6 @@ static void choose_stages(const chain *c, uint32_t *first, uint32_t *last)
     }
 }
 
-static size_t seen_bytes(const chain *c)
-{
-    return ((size_t)c->zone.item_count + c->zone.mover_capacity + 63) / 64 * sizeof(uint64_t);
-}
-
 // ---- The room ----
 
 // Stages before the last may give no tests, and those that are not first no pictures: they learn it from the check of
@@ -42,12 +37,13 @@ void viewer_room_size_add(viewer_room_size *size, const chain *c)
         const cull_built *b = &c->stages[i].built;
         size->scratch = max_size(size->scratch, b->scratch_size);
         size->slot_marks = max_size(size->slot_marks, b->slot_count);
+        size->seen = max_size(size->seen, viewer_seen_bytes(c, i));
         if (i >= last) continue;
         size->early_tests = max_size(size->early_tests, b->max_tests * sizeof(cull_test));
         size->early_captures = max_size(size->early_captures, b->max_captures * sizeof(cull_capture));
         size->early_pictures = max_size(size->early_pictures, b->max_pictures * sizeof(cull_picture));
+        size->early_clipped = max_size(size->early_clipped, b->max_clipped * sizeof(cull_clipped));
     }
-    size->seen = max_size(size->seen, seen_bytes(c));
 }
 
 static int grow_list(list *l, size_t before, size_t *now, const allocator *memory)
@@ -79,6 +75,7 @@ result viewer_room_fit(viewer_room *room, const viewer_room_size *size, const al
     struct { list *l; size_t *before, now; } all[] = {{&room->early_tests, &room->size.early_tests, size->early_tests},
                                                       {&room->early_captures, &room->size.early_captures, size->early_captures},
                                                       {&room->early_pictures, &room->size.early_pictures, size->early_pictures},
+                                                      {&room->early_clipped, &room->size.early_clipped, size->early_clipped},
                                                       {&room->slot_marks, &room->size.slot_marks, size->slot_marks},
                                                       {&room->seen, &room->size.seen, size->seen}};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) {
@@ -90,7 +87,7 @@ result viewer_room_fit(viewer_room *room, const viewer_room_size *size, const al
 
 void viewer_room_close(viewer_room *room, const allocator *memory)
 {
-    list *const all[] = {&room->early_tests, &room->early_captures, &room->early_pictures, &room->slot_marks, &room->seen};
+    list *const all[] = {&room->early_tests, &room->early_captures, &room->early_pictures, &room->early_clipped, &room->slot_marks, &room->seen};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) list_close(all[i], memory);
     memory_free(memory, room->scratch, room->size.scratch, 1);
     *room = (viewer_room){0};
@@ -163,21 +160,26 @@ static int open_lists(viewer *v, const viewer_request *q)
         {&v->tests, last->max_tests, sizeof(cull_test)},
         {&v->captures, last->max_captures, sizeof(cull_capture)},
         {&v->pictures, last->max_pictures, sizeof(cull_picture)},
+        {&v->clipped, last->max_clipped, sizeof(cull_clipped)},
         {&v->select_captures, is_filtered ? select->max_captures : 0, sizeof(cull_capture)},
         {&v->select_pictures, is_filtered ? select->max_pictures : 0, sizeof(cull_picture)},
+        {&v->select_clipped, is_filtered ? select->max_clipped : 0, sizeof(cull_clipped)},
         {&v->keep_captures, is_filtered ? select->max_captures : 0, 1},
         {&v->keep_pictures, is_filtered ? select->max_pictures : 0, 1},
+        {&v->keep_clipped, is_filtered ? select->max_clipped : 0, 1},
         {&v->drawn, drawn_capacity(v), sizeof(cull_run)},
         {&v->answers, v->answer_capacity, sizeof(cull_answer)},
         {&v->slot_movers, movers < q->mover_numbers ? movers : 0, sizeof(uint32_t)},
         {&v->slot_lent, movers, sizeof(uint32_t)},
-        {&v->seen, keeps_seen ? seen_bytes(c) : 0, 1},
+        {&v->seen, keeps_seen ? viewer_seen_bytes(c, v->last) : 0, 1},
     };
     if (!open_planned(v, q, plans, sizeof plans / sizeof *plans)) return 0;
     memset(v->slot_movers.items, 0xFF, v->slot_movers.size); // SCENE_NONE
     memset(v->slot_lent.items, 0, v->slot_lent.size);        // serials count from 1
-    if (v->slot_count) v->slots = memory_alloc_zeroed(v->memory, v->slot_count, 1);
-    return !v->slot_count || v->slots;
+    if (!v->slot_count) return 1;
+    v->slots = memory_alloc_zeroed(v->memory, v->slot_count, 1);
+    v->slot_boxes = memory_alloc_zeroed(v->memory, v->slot_count, sizeof *v->slot_boxes);
+    return v->slots && v->slot_boxes;
 }
 
 static size_t viewer_bytes(const chain *c)
@@ -228,9 +230,10 @@ void viewer_close(viewer *v)
         if (v->stages[i].query) v->chain->stages[i].plugin->close(v->stages[i].query);
         list_close(&v->stages[i].runs, v->memory);
     }
-    list *const all[] = {&v->tests, &v->captures, &v->pictures, &v->drawn, &v->select_captures, &v->select_pictures, &v->keep_captures,
-                         &v->keep_pictures, &v->answers, &v->slot_movers, &v->slot_lent, &v->seen};
+    list *const all[] = {&v->tests, &v->captures, &v->pictures, &v->clipped, &v->drawn, &v->select_captures, &v->select_pictures, &v->select_clipped,
+                         &v->keep_captures, &v->keep_pictures, &v->keep_clipped, &v->answers, &v->slot_movers, &v->slot_lent, &v->seen};
     for (size_t i = 0; i < sizeof all / sizeof *all; ++i) list_close(all[i], v->memory);
     memory_free(v->memory, v->slots, v->slot_count, 1);
+    memory_free(v->memory, v->slot_boxes, v->slot_count, sizeof *v->slot_boxes);
     memory_free(v->memory, v, 1, viewer_bytes(v->chain));
 }

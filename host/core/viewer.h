@@ -19,14 +19,14 @@ typedef struct viewer_stage {
 // What is of meaning only within one call of a culler or one check, so that all zones of a view share it. Each zone uses
 // the tail of these lists, so that each ends at the guard page.
 typedef struct viewer_room_size {
-    size_t early_tests, early_captures, early_pictures; // room for what a stage before the last may not give, so that it harms nobody
+    size_t early_tests, early_captures, early_pictures, early_clipped; // room for what a stage before the last may not give, so that it harms nobody
     size_t slot_marks; // one byte a slot, while a batch or a filter's choice is looked at
     size_t seen;       // bytes; one bit an item and mover, for VIEWER_CHECK_ALL of cullers of one step
     size_t scratch;
 } viewer_room_size;
 typedef struct viewer_room {
     viewer_room_size size;
-    list early_tests, early_captures, early_pictures, slot_marks, seen;
+    list early_tests, early_captures, early_pictures, early_clipped, slot_marks, seen;
     void *scratch;
 } viewer_room;
 
@@ -34,6 +34,16 @@ void viewer_room_size_add(viewer_room_size *size, const chain *c); // the larger
 // Grows to the larger of each. RESULT_NO_MEMORY: the room is as it was.
 result viewer_room_fit(viewer_room *room, const viewer_room_size *size, const allocator *memory);
 void viewer_room_close(viewer_room *room, const allocator *memory); // zeroed is fine
+
+// A bit an item and mover for VIEWER_CHECK_ALL of a stage; three where it clips: in runs, in clipped ones, in one of these.
+static inline size_t viewer_seen_words(const chain *c)
+{
+    return ((size_t)c->zone.item_count + c->zone.mover_capacity + 63) / 64;
+}
+static inline size_t viewer_seen_bytes(const chain *c, uint32_t stage)
+{
+    return viewer_seen_words(c) * sizeof(uint64_t) * (c->stages[stage].built.max_clipped ? 3 : 1);
+}
 
 // An item that other zones list too, by its place in the chain's order; numbers count the world's shared items.
 typedef struct shared_place { uint32_t place, number; } shared_place;
@@ -74,7 +84,7 @@ typedef enum viewer_state {
 typedef struct batch_check {
     uint32_t stage;
     cull_batch lent;                     // the batch before the first call: its lists are the host's and stay
-    uint32_t runs, pictures, mover_runs; // of earlier steps
+    uint32_t runs, pictures, clipped, mover_runs; // of earlier steps
     uint64_t items;                      // in those runs
 } batch_check;
 
@@ -89,14 +99,16 @@ typedef struct viewer {
     viewer_checks checks;
     uint32_t last;  // the stage that may step: the last select or filter
     uint32_t first; // the stage that starts: 0, or a filter that walks the hierarchy
-    list tests, captures, pictures; // of the stepping stage
+    list tests, captures, pictures, clipped; // of the stepping stage
     list drawn;     // cull_run: the host's own copy of what was drawn: of stepping stages, shared items and movers
-    list select_captures, select_pictures, keep_captures, keep_pictures; // of a select behind which a filter stands
+    // Of a select behind which a filter stands:
+    list select_captures, select_pictures, select_clipped, keep_captures, keep_pictures, keep_clipped;
     list answers;
     list slot_movers;  // uint32_t: the mover that each slot names; empty: the slot is the number
     list slot_lent;    // uint32_t: the frame's serial in which each slot was lent last
     list seen;         // as in the room, of a stepping culler
     uint8_t *slots;
+    cull_box *slot_boxes; // of each slot's last capture
     uint32_t slot_count, answer_capacity;
     cull_run whole;    // all items of the zone
     uint32_t told_fault;
@@ -113,7 +125,7 @@ typedef struct viewer {
     uint32_t out_count, fresh;      // of them in this step: from `fresh` on
     uint32_t is_crowded;            // they did not fit: an item was given twice
     uint32_t full_serial;           // frame in which every slot was found taken
-    uint32_t fresh_pictures;        // of the batch: from here on
+    uint32_t fresh_pictures, fresh_clipped; // of the batch: from here on
     viewer_stage stages[];          // chain->stage_count
 } viewer;
 
@@ -145,9 +157,12 @@ static inline int viewer_takes_movers(const viewer *v)
     return v->chain->stages[v->last].built.takes_movers != 0;
 }
 int viewer_has_work(const viewer *v, const frame_driver *d); // drawing or testing would call the driver
-void viewer_draw(viewer *v, const viewer_frame *f);    // runs, captures, pictures of the last step
+void viewer_draw(viewer *v, const viewer_frame *f);    // runs, clipped items, captures, pictures of the last step
 void viewer_test(viewer *v, const viewer_frame *f);    // its tests
 void viewer_collect(viewer *v, const viewer_frame *f); // answers for its next step
+
+// [main, no view being culled] Something in the box changed, relative to the zone's origin: what pictures show of it is stale.
+void viewer_empty_slots(viewer *v, const cull_box *box);
 
 // NULL when what the culler wrote in this step may be used, and is then counted into the check; else what is wrong.
 const char *batch_fault(viewer *v, const cull_batch *batch, batch_check *check);

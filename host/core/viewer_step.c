@@ -92,7 +92,8 @@ static void draw_whole(viewer *v, const viewer_frame *f)
 {
     v->fresh = v->out_count = 0;
     v->fresh_pictures = v->batch.picture_count = v->batch.test_count = v->batch.capture_count = 0;
-    v->visit.picture_count = v->visit.capture_count = 0;
+    v->fresh_clipped = v->batch.clipped_count = 0;
+    v->visit.picture_count = v->visit.capture_count = v->visit.clipped_count = 0;
     if (!v->chain->data->shared_count) {
         v->out = &v->whole;
         v->out_count = v->whole.count ? 1 : 0;
@@ -134,7 +135,9 @@ static cull_batch batch_of_filter(viewer *v, uint32_t stage)
 {
     if (v->visit.capture_count) memset(v->keep_captures.items, 1, v->visit.capture_count);
     if (v->visit.picture_count) memset(v->keep_pictures.items, 1, v->visit.picture_count);
-    return (cull_batch){.runs = v->stages[stage].runs.items, .keep_captures = v->keep_captures.items, .keep_pictures = v->keep_pictures.items};
+    if (v->visit.clipped_count) memset(v->keep_clipped.items, 1, v->visit.clipped_count);
+    return (cull_batch){.runs = v->stages[stage].runs.items, .keep_captures = v->keep_captures.items, .keep_pictures = v->keep_pictures.items,
+                        .keep_clipped = v->keep_clipped.items};
 }
 
 // What a kept picture shows, and what a kept capture is composed of, is kept too: dropping it would leave a hole, or show
@@ -153,9 +156,20 @@ static void keep_what_is_needed(viewer *v, uint8_t *keep_capture, const uint8_t 
     }
 }
 
-// After a filter: of the select's captures and pictures only those that it kept.
+static void drop_unkept_clipped(viewer *v)
+{
+    cull_clipped *clipped = v->select_clipped.items;
+    const uint8_t *keep = v->keep_clipped.items;
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < v->visit.clipped_count; ++i)
+        if (keep[i]) clipped[kept++] = clipped[i];
+    v->visit.clipped_count = kept;
+}
+
+// After a filter: of the select's captures, pictures and clipped items only those that it kept.
 static void drop_unkept(viewer *v)
 {
+    drop_unkept_clipped(v);
     cull_capture *captures = v->select_captures.items;
     cull_picture *pictures = v->select_pictures.items;
     uint8_t *keep_capture = v->keep_captures.items, *keep_picture = v->keep_pictures.items;
@@ -164,6 +178,7 @@ static void drop_unkept(viewer *v)
     keep_what_is_needed(v, keep_capture, keep_picture);
     for (uint32_t i = 0; i < v->visit.capture_count; ++i)
         if (keep_capture[i]) captures[kept_captures++] = captures[i];
+        else v->slots[captures[i].slot] = 0; // the culler takes it for the new picture: what it holds is another
     for (uint32_t i = 0; i < v->visit.picture_count; ++i)
         if (keep_picture[i]) pictures[kept_pictures++] = pictures[i];
     v->visit.capture_count = kept_captures;
@@ -176,6 +191,7 @@ static const char *early_fault(viewer *v, uint32_t stage, const cull_batch *b, b
     const char *fault = batch_fault(v, b, check);
     if (!fault && b->test_count) fault = "it asks for tests, but is not the last select or filter of its chain";
     if (!fault && stage > 0 && (b->capture_count || b->picture_count)) fault = "it gives pictures, but is neither first nor last of its chain";
+    if (!fault && stage > 0 && b->clipped_count) fault = "it clips items, but is neither first nor last of its chain";
     return fault;
 }
 
@@ -187,6 +203,7 @@ static int run_early_stage(viewer *v, const viewer_frame *f, uint32_t stage)
     b.tests = list_tail(&v->room->early_tests, built->max_tests * sizeof(cull_test));
     b.captures = stage == 0 ? v->select_captures.items : list_tail(&v->room->early_captures, built->max_captures * sizeof(cull_capture));
     b.pictures = stage == 0 ? v->select_pictures.items : list_tail(&v->room->early_pictures, built->max_pictures * sizeof(cull_picture));
+    b.clipped = stage == 0 ? v->select_clipped.items : list_tail(&v->room->early_clipped, built->max_clipped * sizeof(cull_clipped));
     batch_check check = {.stage = stage, .lent = b};
     const cull_progress progress = call(v, f, stage, &b);
     const char *fault = early_fault(v, stage, &b, &check, progress);
@@ -201,6 +218,8 @@ static int run_early_stage(viewer *v, const viewer_frame *f, uint32_t stage)
     if (stage > 0) return 1;
     v->visit.captures = b.captures;
     v->visit.pictures = b.pictures;
+    v->visit.clipped = b.clipped;
+    v->visit.clipped_count = b.clipped_count;
     v->visit.capture_count = b.capture_count;
     v->visit.picture_count = b.picture_count;
     return 1;
@@ -210,7 +229,7 @@ static int run_early_stage(viewer *v, const viewer_frame *f, uint32_t stage)
 static int run_early_stages(viewer *v, const viewer_frame *f)
 {
     const cull_built *select = &v->chain->stages[0].built;
-    if (v->first > 0 && (select->max_pictures || select->max_captures)) {
+    if (v->first > 0 && (select->max_pictures || select->max_captures || select->max_clipped)) {
         if (!run_early_stage(v, f, 0)) return 0;
         v->visit.candidates = NULL;
         v->visit.candidate_count = 0;
@@ -228,17 +247,19 @@ static const char *step_fault(viewer *v)
     return v->visit.step + 1 >= v->chain->stages[v->last].built.max_steps ? "it wants more steps than it told" : NULL;
 }
 
-static void count_batch(const viewer_frame *f, const cull_batch *b, uint32_t earlier_pictures)
+static void count_batch(const viewer *v, const viewer_frame *f)
 {
-    f->stats->captures += b->capture_count;
-    f->stats->pictures += b->picture_count - earlier_pictures;
-    f->stats->queries += b->test_count;
+    f->stats->captures += v->batch.capture_count;
+    f->stats->pictures += v->batch.picture_count - v->fresh_pictures;
+    f->stats->clipped += v->batch.clipped_count - v->fresh_clipped;
+    f->stats->queries += v->batch.test_count;
 }
 
-// Who gives pictures leaves the items out that they stand for; where nobody shows them, the items have to be drawn.
+// Who gives pictures or clips leaves the items out of its runs; where nobody shows or clips them, they have to be drawn.
 static int lacks_a_shower(const viewer *v, const frame_driver *d)
 {
-    return !(d->capture && d->show) && (v->batch.picture_count || v->visit.picture_count);
+    return (!(d->capture && d->show) && (v->batch.picture_count || v->visit.picture_count)) ||
+           (!d->draw_clipped && (v->batch.clipped_count || v->visit.clipped_count));
 }
 
 static void end_zone(viewer *v, const viewer_frame *f)
@@ -252,6 +273,7 @@ static void end_zone(viewer *v, const viewer_frame *f)
     }
     f->stats->captures += v->visit.capture_count; // of a select, kept by the filter: carried out with its last step
     f->stats->pictures += v->visit.picture_count;
+    f->stats->clipped += v->visit.clipped_count;
 }
 
 // The stage that may step.
@@ -259,6 +281,7 @@ static void run_last_stage(viewer *v, const viewer_frame *f)
 {
     const uint32_t earlier_runs = v->check.runs;
     v->fresh_pictures = v->check.pictures;
+    v->fresh_clipped = v->check.clipped;
     v->batch.test_count = v->batch.capture_count = 0;
     v->progress = call(v, f, v->last, &v->batch);
     const char *fault = step_fault(v);
@@ -273,7 +296,26 @@ static void run_last_stage(viewer *v, const viewer_frame *f)
     }
     v->state = VIEWER_STEPS;
     if (v->progress == CULL_DONE) end_zone(v, f);
-    count_batch(f, &v->batch, v->fresh_pictures);
+    count_batch(v, f);
+}
+
+// ---- Slots ----
+
+// The driver may have given memory of one up, or have had none for it.
+static void check_slots(viewer *v, const viewer_frame *f)
+{
+    const frame_driver *d = &f->input->driver;
+    if (v->slot_count && d->check_slots) d->check_slots(d->user, v->chain->data->index, v->slots, v->slot_count);
+}
+
+static int touch(const cull_box *a, const cull_box *b)
+{
+    return a->min.x <= b->max.x && b->min.x <= a->max.x && a->min.y <= b->max.y && b->min.y <= a->max.y && a->min.z <= b->max.z && b->min.z <= a->max.z;
+}
+
+void viewer_empty_slots(viewer *v, const cull_box *box)
+{
+    for (uint32_t i = 0; i < v->slot_count; ++i) v->slots[i] &= (uint8_t)!touch(&v->slot_boxes[i], box);
 }
 
 void viewer_begin(viewer *v, const viewer_frame *f, const viewer_visit *seen)
@@ -284,8 +326,9 @@ void viewer_begin(viewer *v, const viewer_frame *f, const viewer_visit *seen)
     v->visit = (cull_visit){.view = seen->view, .volumes = seen->volumes, .volume_count = seen->volume_count,
                             .slots = v->slots, .scratch = v->room->scratch};
     v->progress = CULL_MORE;
-    v->out_count = v->fresh = v->fresh_pictures = v->is_crowded = 0;
+    v->out_count = v->fresh = v->fresh_pictures = v->fresh_clipped = v->is_crowded = 0;
     for (uint32_t i = 0; i < v->last; ++i) v->stages[i].run_count = 0;
+    check_slots(v, f);
 }
 
 static void start_last_stage(viewer *v)
@@ -294,6 +337,7 @@ static void start_last_stage(viewer *v)
     v->batch.pictures = v->pictures.items;
     v->batch.tests = v->tests.items;
     v->batch.captures = v->captures.items;
+    v->batch.clipped = v->clipped.items;
     v->check = (batch_check){.stage = v->last, .lent = v->batch};
 }
 
@@ -313,35 +357,47 @@ void viewer_step(viewer *v, const viewer_frame *f)
 int viewer_has_work(const viewer *v, const frame_driver *d)
 {
     const cull_batch *b = &v->batch;
-    const int asks = b->capture_count || b->test_count || b->picture_count > v->fresh_pictures;
-    const int keeps = v->last > 0 && v->state == VIEWER_DONE && (v->visit.capture_count || v->visit.picture_count);
+    const int asks = b->capture_count || b->test_count || b->picture_count > v->fresh_pictures || b->clipped_count > v->fresh_clipped;
+    const int keeps = v->last > 0 && v->state == VIEWER_DONE && (v->visit.capture_count || v->visit.picture_count || v->visit.clipped_count);
     return asks || keeps || (d->draw && v->out_count > v->fresh) || (v->state == VIEWER_STEPS && d->collect && v->answer_capacity);
 }
 
-static void capture_and_show(viewer *v, const viewer_frame *f, const cull_batch *b, uint32_t earlier_pictures)
+static void capture(viewer *v, const viewer_frame *f, const cull_batch *b)
 {
     const frame_driver *d = &f->input->driver;
-    const uint32_t zone = v->chain->data->index;
-    if (d->capture && b->capture_count) {
-        d->capture(d->user, zone, b->captures, b->capture_count);
-        for (uint32_t i = 0; i < b->capture_count; ++i) v->slots[b->captures[i].slot] = 1;
+    if (!d->capture || !b->capture_count) return;
+    d->capture(d->user, v->chain->data->index, b->captures, b->capture_count);
+    for (uint32_t i = 0; i < b->capture_count; ++i) {
+        v->slots[b->captures[i].slot] = 1;
+        v->slot_boxes[b->captures[i].slot] = b->captures[i].box;
     }
-    if (d->show && b->picture_count > earlier_pictures) d->show(d->user, zone, b->pictures + earlier_pictures, b->picture_count - earlier_pictures);
+    check_slots(v, f);
 }
 
-// A select's captures and pictures that the filter kept are carried out once, with the filter's last step.
+// Of the batch, what earlier steps did not give.
+static void clip_capture_and_show(viewer *v, const viewer_frame *f, const cull_batch *b, const batch_check *earlier)
+{
+    const frame_driver *d = &f->input->driver;
+    const uint32_t zone = v->chain->data->index, clipped = b->clipped_count - earlier->clipped, pictures = b->picture_count - earlier->pictures;
+    if (d->draw_clipped && clipped) d->draw_clipped(d->user, zone, b->clipped + earlier->clipped, clipped);
+    capture(v, f, b);
+    if (d->show && pictures) d->show(d->user, zone, b->pictures + earlier->pictures, pictures);
+}
+
+// A select's clipped items, captures and pictures that the filter kept are carried out once, with the filter's last step.
 static void carry_out_kept(viewer *v, const viewer_frame *f)
 {
-    const cull_batch kept = {.captures = v->select_captures.items, .pictures = v->select_pictures.items,
-                             .capture_count = v->visit.capture_count, .picture_count = v->visit.picture_count};
-    capture_and_show(v, f, &kept, 0);
+    const cull_batch kept = {.captures = v->select_captures.items, .pictures = v->select_pictures.items, .clipped = v->select_clipped.items,
+                             .capture_count = v->visit.capture_count, .picture_count = v->visit.picture_count,
+                             .clipped_count = v->visit.clipped_count};
+    clip_capture_and_show(v, f, &kept, &(batch_check){0});
 }
 
 void viewer_draw(viewer *v, const viewer_frame *f)
 {
     const frame_driver *d = &f->input->driver;
     if (d->draw && v->out_count > v->fresh) d->draw(d->user, v->chain->data->index, v->out + v->fresh, v->out_count - v->fresh);
-    capture_and_show(v, f, &v->batch, v->fresh_pictures);
+    clip_capture_and_show(v, f, &v->batch, &(batch_check){.pictures = v->fresh_pictures, .clipped = v->fresh_clipped});
     if (v->last > 0 && v->state == VIEWER_DONE) carry_out_kept(v, f);
 }
 

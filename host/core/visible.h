@@ -11,8 +11,8 @@
 typedef enum collect_how { COLLECT_WHAT_IS_READY, COLLECT_EVERYTHING } collect_how;
 
 // What carries out batches. Functions may be NULL; without `test` every test counts as seen, without `capture` no slot
-// is ever filled, and without one of `capture` and `show` a zone that gives pictures is drawn whole. Called between steps,
-// on the stepping thread; their time is not the cullers'.
+// is ever filled, and without one of `capture` and `show` a zone that gives pictures is drawn whole, as is one that gives
+// clipped items without `draw_clipped`. Called between steps, on the stepping thread; their time is not the cullers'.
 typedef struct frame_driver {
     void *user;
     void (*draw)(void *user, uint32_t zone, const cull_run *runs, uint32_t run_count); // places in the order of the zone's chain
@@ -22,6 +22,9 @@ typedef struct frame_driver {
     void (*test)(void *user, uint32_t zone, const cull_test *tests, uint32_t count, uint32_t frame);
     // Answers to the zone's tests only.
     uint32_t (*collect)(void *user, uint32_t zone, collect_how how, uint32_t frame, cull_answer *answers, uint32_t capacity, uint32_t *stalled);
+    void (*draw_clipped)(void *user, uint32_t zone, const cull_clipped *clipped, uint32_t count);
+    // Before the zone's first step and after its captures: to 0 which slots hold no picture, or none any more. Its time is the frame's.
+    void (*check_slots)(void *user, uint32_t zone, uint8_t *slots, uint32_t count);
 } frame_driver;
 
 typedef struct frame_input {
@@ -33,7 +36,7 @@ typedef struct frame_input {
 typedef struct frame_stats {
     double cull_ns; // CPU time of host flow and plugin steps, without the driver's
     uint32_t zones, volumes, crossings; // reached, seen through, portals tried
-    uint32_t steps, queries, captures, pictures, stalls, limits_hit, faults, portal_merges;
+    uint32_t steps, queries, captures, pictures, clipped, stalls, limits_hit, faults, portal_merges;
     uint32_t movers_tested, movers_drawn;
     uint64_t nodes_visited, items_drawn; // items of the runs, movers not counted
 } frame_stats;

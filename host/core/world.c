@@ -3,6 +3,7 @@
 #include "world_parts.h"
 
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 // ---- Opening ----
@@ -172,7 +173,37 @@ const zone_data *world_zone(const world *w, uint32_t zone)
     return &w->data[zone];
 }
 
+// ---- What pictures show ----
+
+// To float and back is off by 2^-24 of the number, and so is the picture's own box: 2^-22 of it outward finds all that touch.
+static cull_box box_in_zone(const double origin[3], const double min[3], const double max[3])
+{
+    float low[3], high[3];
+    for (int k = 0; k < 3; ++k) {
+        low[k] = (float)(min[k] - origin[k] - fabs(min[k] - origin[k]) * 0x1p-22);
+        high[k] = (float)(max[k] - origin[k] + fabs(max[k] - origin[k]) * 0x1p-22);
+    }
+    return (cull_box){{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
+void world_changed(world *w, const double min[3], const double max[3])
+{
+    world_assert_still(w);
+    for (uint32_t zone = 0; w->views && zone < w->scene->zone_count; ++zone) {
+        const cull_box box = box_in_zone(w->scene->zones[zone].origin, min, max);
+        for (world_view *v = w->views; v; v = v->next)
+            if (v->zones[zone]) viewer_empty_slots(v->zones[zone], &box);
+    }
+}
+
 // ---- Doors and movers ----
+
+// No picture holds a door or a mover: they are drawn as they are. But what stands about a door may look otherwise now.
+static void door_changed(world *w, uint32_t mover)
+{
+    double min[3], max[3];
+    if (movers_box(w->movers, mover, min, max)) world_changed(w, min, max);
+}
 
 void world_set_door(world *w, uint32_t door, door_state state)
 {
@@ -181,7 +212,11 @@ void world_set_door(world *w, uint32_t door, door_state state)
     if (w->doors[door] == state) return;
     w->doors[door] = state;
     shut_portals(w, door);
-    if (w->scene->doors[door].mover != SCENE_NONE) place_mover(w, w->scene->doors[door].mover, movers_move);
+    const uint32_t mover = w->scene->doors[door].mover;
+    if (mover == SCENE_NONE) return;
+    door_changed(w, mover); // where it was
+    place_mover(w, mover, movers_move);
+    door_changed(w, mover); // and where it is
 }
 
 door_state world_door(const world *w, uint32_t door)

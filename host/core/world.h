@@ -40,6 +40,9 @@ result world_swap_commit(world *w, world_swap *s, report *r);
 void world_swap_drop(world_swap *s); // NULL is fine: a swap that is not wanted any more
 result world_set_chain(world *w, uint32_t zone, const chain_spec *spec, report *r); // both steps
 
+// Something in the box looks otherwise from now on: an item's material, a light. Pictures that show it are taken anew, in every view.
+void world_changed(world *w, const double min[3], const double max[3]);
+
 // ---- Doors and movers ----
 void world_set_door(world *w, uint32_t door, door_state state); // its portals, and its mover's place
 door_state world_door(const world *w, uint32_t door);

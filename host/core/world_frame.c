@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Invariant: in each round all zones step, then all draw, then all test, then all answers are collected: half the stalls of
 // zone by zone, and no test is asked before the near zones' draws. After a cut of the view there is nothing to guess by,
-// and zone by zone draws least.
+// and zone by zone draws least; so does who asks no more than one test a step, and has chosen to wait.
 #define _POSIX_C_SOURCE 200809L
 #include "world_parts.h"
 
@@ -199,14 +199,34 @@ static int may_step(const viewer *v)
     return v->chain->stages[v->last].built.max_steps > 1 || v->answer_capacity;
 }
 
+// A test a step, each after what the one before it let be drawn: in rounds with zones in front its tests would come before their draws.
+static int tests_singly(const viewer *v)
+{
+    const cull_built *last = &v->chain->stages[v->last].built;
+    return last->max_tests == 1 && last->max_steps > 1;
+}
+
+// Where a run of zones that step in common rounds ends. After a cut that is the first that may step: zones that don't go with
+// the next that does. Else one that tests singly begins when all nearer zones have drawn, and ends before the next begins.
+static uint32_t rounds_end(const world_view *v, uint32_t first)
+{
+    const int is_cut = (v->frame.input->frame.flags & CULL_VIEW_CUT) != 0;
+    uint32_t end = first;
+    int steps = 0; // one of the run does
+    for (; end < v->active_count; ++end) {
+        const viewer *zone = v->active[end];
+        if (!may_step(zone)) continue;
+        if (is_cut) return end + 1;
+        if (!tests_singly(zone)) steps = 1;
+        else return steps ? end : end + 1;
+    }
+    return end;
+}
+
 static void run_zones(world_view *v)
 {
-    if (!(v->frame.input->frame.flags & CULL_VIEW_CUT)) {
-        run_rounds(v, v->active, v->active_count);
-        return;
-    }
-    for (uint32_t first = 0, end; first < v->active_count; first = end) { // zones that don't step go with the next that does
-        for (end = first + 1; end < v->active_count && !may_step(v->active[end - 1]);) ++end;
+    for (uint32_t first = 0, end; first < v->active_count; first = end) {
+        end = rounds_end(v, first);
         run_rounds(v, v->active + first, end - first);
     }
 }

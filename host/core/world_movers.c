@@ -78,14 +78,25 @@ static uint32_t free_slot(const world *w, const viewer *v, uint32_t mover)
     return SCENE_NONE;
 }
 
-// The mover keeps its slot while it stays in the zone. SCENE_NONE: all are taken.
+// Looked for from where free_slot began, so mostly found at once.
+static uint32_t slot_named(const uint32_t *names, uint32_t capacity, uint32_t mover)
+{
+    const uint32_t home = mover % capacity;
+    for (uint32_t slot = home; slot < capacity; ++slot)
+        if (names[slot] == mover) return slot;
+    for (uint32_t slot = 0; slot < home; ++slot)
+        if (names[slot] == mover) return slot;
+    return SCENE_NONE;
+}
+
+// The mover keeps its slot while it stays in the zone. SCENE_NONE: all are taken, of which there are at most ZONE_MOVERS_MOST.
 static uint32_t slot_of(const world *w, viewer *v, uint32_t mover)
 {
     uint32_t *names = v->slot_movers.items;
     const uint32_t capacity = v->chain->zone.mover_capacity;
     if (!v->slot_movers.size) return mover < capacity ? mover : SCENE_NONE; // as many slots as numbers
-    for (uint32_t slot = 0; slot < capacity; ++slot)
-        if (names[slot] == mover) return slot;
+    const uint32_t named = slot_named(names, capacity, mover);
+    if (named != SCENE_NONE) return named;
     if (v->full_serial == v->serial) return SCENE_NONE; // none becomes free while a frame lasts
     const uint32_t slot = free_slot(w, v, mover);
     if (slot != SCENE_NONE) names[slot] = mover;

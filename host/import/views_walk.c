@@ -355,8 +355,9 @@ static result try_start(walker *w, const eye *e, double heading, uint32_t frames
 
 static int is_start(const walker *w, const eye *e)
 {
+    double at[3] = {e->at[0], e->at[1], e->at[2]};
     if (!is_free(w, e->at) || (!w->a->scene->is_map && free_space_is_enclosed(w->a->space, e->at))) return 0;
-    return w->style != WALK_STREET || isinf(free_space_along(w->a->space, e->at, (axis_ray){1, 1}));
+    return w->style != WALK_STREET || (isinf(free_space_along(w->a->space, e->at, (axis_ray){1, 1})) && is_on_street(w, at));
 }
 
 static int lower_first(const void *left, const void *right)
@@ -419,6 +420,8 @@ static result walk_from_best(walker *w, uint32_t count, camera *cameras)
     uint32_t score = 0;
     const uint64_t frames = (uint64_t)count * stride_of(w->style);
     result done = find_start(w, frames < TRIAL_FRAMES ? (uint32_t)frames : TRIAL_FRAMES, &start, &heading, &score);
+    if (done == RESULT_OK && score == 0 && w->style == WALK_STREET)
+        return report_error(w->a->report, w->a->scene->path, 0, "no place on the ground under the open sky has room to walk; use auto:walk:%u", count);
     if (done == RESULT_OK && score == 0) start = start_beside(w);
     if (done == RESULT_OK) done = begin(w, &start, heading);
     return done == RESULT_OK ? walk(w, count, cameras) : done;

@@ -12,32 +12,19 @@ static const double BOX_WIDEN = 0x1p-20;      // of the distance to the eye: the
 static const double BOX_WIDEN_PX = 1.0 / 256; // pixels: item and box corners are each moved up to 1/512 to the raster's grid
 static const double NEAR_MARGIN = 0x1p-10; // of the near distance: the raster's own clipping is that exact by far
 
-static const uint8_t BOX_FACES[36] = { // corner bits: x 1, y 2, z 4; counterclockwise from outside
-    0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6,
+static const uint8_t BOX_FACES[6][6] = { // least x, most x, least y ...; corner bits: x 1, y 2, z 4; counterclockwise from outside
+    {0, 4, 6, 0, 6, 2}, {1, 3, 7, 1, 7, 5}, {0, 1, 5, 0, 5, 4}, {2, 6, 7, 2, 7, 3}, {0, 2, 3, 0, 3, 1}, {4, 5, 7, 4, 7, 6},
 };
-enum { CORNER_FLOATS = 8 * 3 };
-
-static GLuint chunk_elements(uint32_t *indices)
-{
-    for (uint32_t box = 0; box < BOX_CHUNK; ++box)
-        for (uint32_t i = 0; i < 36; ++i) indices[box * 36 + i] = box * 8 + BOX_FACES[i];
-    GLuint name = 0;
-    glCreateBuffers(1, &name);
-    glNamedBufferStorage(name, BOX_CHUNK * 36 * sizeof(uint32_t), indices, 0);
-    return name;
-}
+enum { CORNER_FLOATS = 8 * 3, FACES_SEEN = 3, ELEMENTS_MOST = BOX_CHUNK * FACES_SEEN * 6 };
 
 result boxes_open(renderer *g, report *r)
 {
     box_pass *b = &g->boxes;
-    uint32_t *indices = memory_alloc(g->memory, BOX_CHUNK * 36, sizeof *indices);
     b->staged = memory_alloc(g->memory, (size_t)BOX_CHUNK * CORNER_FLOATS, sizeof *b->staged);
-    if (!indices || !b->staged) {
-        memory_free(g->memory, indices, BOX_CHUNK * 36, sizeof *indices);
-        return report_no_memory(r, NULL);
-    }
-    b->elements = chunk_elements(indices);
-    memory_free(g->memory, indices, BOX_CHUNK * 36, sizeof *indices);
+    b->staged_elements = memory_alloc(g->memory, ELEMENTS_MOST, sizeof *b->staged_elements);
+    if (!b->staged || !b->staged_elements) return report_no_memory(r, NULL);
+    glCreateBuffers(1, &b->elements);
+    glNamedBufferStorage(b->elements, (GLsizeiptr)(ELEMENTS_MOST * sizeof(uint32_t)), NULL, GL_DYNAMIC_STORAGE_BIT);
     glCreateBuffers(1, &b->corners);
     glNamedBufferStorage(b->corners, (GLsizeiptr)(BOX_CHUNK * CORNER_FLOATS * sizeof(float)), NULL, GL_DYNAMIC_STORAGE_BIT);
     glCreateVertexArrays(1, &b->vertices);
@@ -56,6 +43,7 @@ void boxes_close(renderer *g)
     glDeleteBuffers(1, &b->corners);
     glDeleteBuffers(1, &b->elements);
     memory_free(g->memory, b->staged, (size_t)BOX_CHUNK * CORNER_FLOATS, sizeof *b->staged);
+    memory_free(g->memory, b->staged_elements, ELEMENTS_MOST, sizeof *b->staged_elements);
     *b = (box_pass){0};
 }
 
@@ -110,7 +98,7 @@ void boxes_begin(renderer *g, const viewpoint *v, GLuint counts)
     box_pass *b = &g->boxes;
     b->view = v;
     b->counts = counts;
-    b->staged_count = b->first_slot = 0;
+    b->staged_count = b->element_count = b->first_slot = 0;
 }
 
 static void draw_staged(renderer *g)
@@ -125,11 +113,23 @@ static void draw_staged(renderer *g)
         glProgramUniformMatrix4fv(program, AT_CLIP_FROM_EYE, 1, GL_FALSE, b->view->clip);
         glProgramUniform1ui(program, 1, b->first_slot);
         glNamedBufferSubData(b->corners, 0, (GLsizeiptr)(b->staged_count * CORNER_FLOATS * sizeof(float)), b->staged);
-        glDrawElements(GL_TRIANGLES, (GLsizei)(b->staged_count * 36), GL_UNSIGNED_INT, NULL);
+        glNamedBufferSubData(b->elements, 0, (GLsizeiptr)(b->element_count * sizeof(uint32_t)), b->staged_elements);
+        glDrawElements(GL_TRIANGLES, (GLsizei)b->element_count, GL_UNSIGNED_INT, NULL);
         g->frame.draw_calls++;
     }
     b->first_slot += b->staged_count;
-    b->staged_count = 0;
+    b->staged_count = b->element_count = 0;
+}
+
+// The faces that the eye, at 0 and outside, sees: their edge is that of the whole box, from the same corners, so rounded they cover each pixel
+// that lies within the box by more than the rounding, and the box was widened by more. Half the triangles of a box, and no back to be rasterized.
+static void faces_add(box_pass *b, const eye_box *box)
+{
+    for (uint32_t k = 0; k < 3; ++k) {
+        if (!(box->low[k] > 0) && !(box->high[k] < 0)) continue;
+        const uint8_t *face = BOX_FACES[2 * k + (box->low[k] > 0 ? 0 : 1)];
+        for (uint32_t i = 0; i < 6; ++i) b->staged_elements[b->element_count++] = b->staged_count * 8 + face[i];
+    }
 }
 
 void boxes_add(renderer *g, const eye_box *box)
@@ -138,6 +138,7 @@ void boxes_add(renderer *g, const eye_box *box)
     float *corner = b->staged + (size_t)b->staged_count * CORNER_FLOATS;
     for (uint32_t i = 0; i < 8; ++i)
         for (uint32_t k = 0; k < 3; ++k) *corner++ = i >> k & 1 ? box->high[k] : box->low[k];
+    faces_add(b, box);
     if (++b->staged_count == BOX_CHUNK) draw_staged(g);
 }
 

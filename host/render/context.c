@@ -181,6 +181,7 @@ result renderer_open(const renderer_options *o, const allocator *memory, report 
     g->display = EGL_NO_DISPLAY;
     g->context = EGL_NO_CONTEXT;
     g->tests.by_driver = 1;
+    g->pictures.options.bytes_most = 256u << 20;
     result done = o && o->target == RENDERER_WINDOW ? open_window(g, o, r) : open_headless(g, r);
     if (done == RESULT_OK) done = prepare(g, r);
     if (done == RESULT_OK) done = boxes_open(g, r);

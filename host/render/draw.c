@@ -37,7 +37,8 @@ result frame_reserve(renderer *g, uint32_t zones, uint32_t places, uint32_t tran
 {
     enum { LONG_RANGES = 8 }; // that are too long for one draw and take two places
     frame_flush(g);
-    if (reserve_cuts(g, zones) != RESULT_OK || reserve_translucent(g, translucent) != RESULT_OK) return RESULT_NO_MEMORY;
+    const uint32_t noted = translucent < UINT32_MAX / 2 ? 2 * translucent : UINT32_MAX; // where some come often, half of a full list at least goes
+    if (reserve_cuts(g, zones) != RESULT_OK || reserve_translucent(g, noted) != RESULT_OK) return RESULT_NO_MEMORY;
     return places < UINT32_MAX - LONG_RANGES ? ranges_reserve(&g->scene.ranges, places + LONG_RANGES, g->memory) : RESULT_OK;
 }
 

@@ -21,6 +21,7 @@ typedef enum program_kind {
     PROGRAM_OVERDRAW,
     PROGRAM_BOXES,
     PROGRAM_PICTURE,
+    PROGRAM_DILATE,
     PROGRAM_HEAT,
     PROGRAM_OVERLAY,
     PROGRAM_KINDS
@@ -33,7 +34,10 @@ enum { // what a program must know of the scene or the pass; compiled in, on fir
     VARIANT_CLIP = 1u << 3,  // by up to four planes
     VARIANT_KEEP_DEPTH = 1u << 4,
     VARIANT_MOVERS = 1u << 5, // vertices of movers go where their pose has them
-    VARIANTS = 1u << 6
+    VARIANT_LINEAR = 1u << 6, // a picture's colours between its texels
+    VARIANT_FRINGE = 1u << 7, // of a picture what stands about its mask
+    VARIANT_FLAT = 1u << 8,   // some vertices have no normal: shaded as their face lies
+    VARIANTS = 1u << 9
 };
 
 enum { // vertex words: material below, then
@@ -72,6 +76,8 @@ typedef enum colour_writes { COLOUR_ON, COLOUR_OFF } colour_writes;
 typedef enum depth_writes { DEPTH_ON, DEPTH_OFF } depth_writes;
 typedef enum back_faces { BACK_DRAWN, BACK_CULLED } back_faces;
 typedef enum depth_offset { OFFSET_NONE, OFFSET_FARTHER, OFFSET_NEARER } depth_offset;
+// BEHIND: one depth, behind all that has a depth of its own; FRINGE: behind that.
+typedef enum depth_range { RANGE_OWN, RANGE_BEHIND, RANGE_FRINGE } depth_range;
 
 typedef struct gl_state {
     GLuint program, vertices, framebuffer;
@@ -82,6 +88,7 @@ typedef struct gl_state {
     blend blend;
     back_faces back;
     depth_offset offset;
+    depth_range range;
     uint32_t known; // 0: nothing of it is set yet
 } gl_state;
 
@@ -98,6 +105,8 @@ typedef struct pass_state {
     depth_offset offset;
 } pass_state;
 void state_pass(renderer *g, const pass_state *p);
+void state_pass_at(renderer *g, const pass_state *p, depth_range range);
+#define PICTURE_DEPTH 0x1p-120 // of a picture that keeps none; see state.c
 
 // ---- Targets (target.c) ----
 
@@ -150,7 +159,7 @@ void item_box(const renderer *g, uint32_t item, mover_box *out); // of any item,
 
 // ---- The scene on the GPU (upload.c) ----
 
-typedef struct vertex_buffers { GLuint positions, words, triangles, texcoords, normals, others, movers; } vertex_buffers; // 0: not needed
+typedef struct vertex_buffers { GLuint positions, words, triangles, texcoords, normals, paints, others, movers; } vertex_buffers; // 0: not needed
 
 typedef struct scene_gpu {
     const scene *scene; // NULL: none
@@ -164,7 +173,7 @@ typedef struct scene_gpu {
     uint32_t see_through_count;
     uint32_t index_count, triangle_count, item_total; // movers too
     uint32_t vertex_count; // of buffers
-    uint32_t variant;          // VARIANT_CUT_OUT, VARIANT_TRANSLUCENT, VARIANT_MOVERS as the scene needs
+    uint32_t variant;          // VARIANT_CUT_OUT, VARIANT_TRANSLUCENT, VARIANT_MOVERS, VARIANT_FLAT as the scene needs
     uint32_t has_two_sided;    // an opaque triangle of a two-sided item
     uint32_t *box_items;       // item_total: scratch of the floor
     uint32_t *box_counts;      // item_total: scratch of the floor
@@ -207,7 +216,8 @@ enum { BOX_CHUNK = 2048 };
 typedef struct box_pass {
     GLuint vertices, corners, elements;
     float *staged; // BOX_CHUNK boxes of 8 corners
-    uint32_t staged_count, first_slot;
+    uint32_t *staged_elements; // of the faces that the eye sees, at most three a box
+    uint32_t staged_count, element_count, first_slot;
     const viewpoint *view;
     GLuint counts;
 } box_pass;
@@ -273,8 +283,11 @@ struct render_layout {
     uint32_t *first_index; // of each place, movers behind; one more at the end
     uint32_t *see_through; // places before this one that are; NULL: none is
     picture_slot *slots;
+    picture_slot **shown;  // slot_count: of this frame, each once
+    render_picture_counts pictures;
     layout_pieces *pieces; // NULL: see-through items go by distance
     uint32_t zone_count, place_count, total, slot_count; // total: places and movers
+    uint32_t shown_count;
 };
 
 #define LAYOUT_MOVERS UINT32_MAX // in the place of a zone: what stands behind all zones
@@ -316,6 +329,7 @@ typedef struct frame_state {
     uint32_t number; // of this frame
     uint32_t draw_calls, state_changes;
     uint32_t open; // between begin and end
+    uint32_t may_repeat; // a translucent item may have been noted twice
 } frame_state;
 
 // A pass over runs of a zone, for frames and captures.
@@ -323,6 +337,17 @@ typedef struct draw_pass {
     const viewpoint *view;
     const GLfloat (*planes)[4]; // four, relative to the eye; NULL: none
 } draw_pass;
+
+// Planes of a zone as the shaders take them. Between begin and end as many cut as there are.
+typedef struct clip_pass { GLfloat planes[4][4]; uint32_t count; } clip_pass;
+typedef struct clip_request {
+    const cull_plane *planes;
+    uint32_t count, zone;
+    const viewpoint *view;
+} clip_request;
+void clip_make(const renderer *g, const clip_request *q, clip_pass *out);
+void clip_begin(const clip_pass *c);
+void clip_end(const clip_pass *c);
 
 result frame_reserve(renderer *g, uint32_t zones, uint32_t places, uint32_t translucent); // nothing changes on failure but what grew
 void frame_release(renderer *g);
@@ -338,11 +363,16 @@ void translucent_note(renderer *g, const layout_runs *r);
 void translucent_draw(renderer *g);
 void translucent_sort(translucent_item *items, uint32_t count); // by rank, then farthest first, then by global id
 
-// ---- Pictures (capture.c) ----
+// ---- Pictures (picture_slots.c, capture.c, picture_show.c) ----
 
 struct picture_slot {
     GLuint framebuffer, colour, depth;
     uint32_t width_px, height_px, keep_depth, filled;
+    render_mode mode; // of the frame that it was taken in: its colours mean nothing in another
+    faces faces;
+    uint32_t used;   // number of the frame that last took or showed it
+    uint32_t listed; // number of the frame whose list it stands in
+    uint64_t bytes;  // of its textures
     double corner[3], right[3], up[3], eye[3]; // relative to the scene's origin
     double near_fraction; // distance of depth 1, in units of the parallelogram's
 };
@@ -350,9 +380,21 @@ struct picture_slot {
 enum { SLOTS_MOST = 65536 };
 typedef struct picture_shared {
     GLuint vertices; // of a draw without attributes
-    GLuint spare_depth; // for captures that keep none
-    uint32_t spare_width_px, spare_height_px;
+    GLuint spare_depth, spare_colour; // for captures that keep none; for what is dilated
+    uint32_t spare_width_px, spare_height_px; // of both
+    picture_options options;
 } picture_shared;
+
+picture_slot *slot_find(const render_layout *l, uint32_t zone, uint32_t slot); // NULL: there is none
+int slot_holds(const renderer *g, const picture_slot *s); // a picture that this frame may show
+int slot_textures(renderer *g, picture_slot *s, const cull_capture *c); // of an empty one. 0: the driver has none
+void capture_begin(renderer *g, const picture_slot *s); // bound and cleared
+// Textures and framebuffer of that size, within the memory that the layout's pictures may take. 0: none.
+int slot_prepare(renderer *g, render_layout *l, picture_slot *s, const cull_capture *c);
+void slot_empty(renderer *g, picture_slot *s); // and its memory given back
+void slot_dilate(renderer *g, const picture_slot *s); // colours go on for a texel outside the mask
+void picture_draw(renderer *g, const picture_slot *s, const viewpoint *v); // into what is bound
+void pictures_draw_fringes(renderer *g); // of those shown in the frame, where nothing else stands
 
 void pictures_forget_zone(renderer *g, render_layout *l, uint32_t zone);
 void pictures_close_layout(renderer *g, render_layout *l);
@@ -401,6 +443,8 @@ struct renderer {
     frame_state frame;
     render_layout *layouts;
     picture_shared pictures;
+    cull_costs costs;      // of the scene `costs_of`; NULL: not measured
+    const scene *costs_of;
     overlay_pass overlay;
     target *id_target; // of the last id picture, while its depth is there
 };

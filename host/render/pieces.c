@@ -30,7 +30,7 @@ void pieces_close(render_layout *l)
     const allocator *memory = l->g->memory;
     if (!p) return;
     const vertex_buffers *v = &p->buffers;
-    const GLuint buffers[] = {v->positions, v->words, v->triangles, v->texcoords, v->normals, v->others, v->movers, p->elements};
+    const GLuint buffers[] = {v->positions, v->words, v->triangles, v->texcoords, v->normals, v->paints, v->others, v->movers, p->elements};
     glDeleteVertexArrays(1, &p->vertices);
     glDeleteBuffers((GLsizei)(sizeof buffers / sizeof *buffers), buffers);
     l->g->state.vertices = 0; // its name may come again
@@ -212,7 +212,7 @@ static uint32_t word_of(const source *from, const piece_vertex *v)
 }
 
 // One attribute of all pieces' vertices, as the buffer has it.
-typedef enum attribute_kind { POSITIONS, WORDS, TRIANGLES, TEXCOORDS, NORMALS, ZEROS } attribute_kind;
+typedef enum attribute_kind { POSITIONS, WORDS, TRIANGLES, TEXCOORDS, NORMALS, PAINTS, ZEROS } attribute_kind;
 static void write_attribute(const source *from, attribute_kind kind, const pieces_mesh *mesh, uint32_t *out)
 {
     const piece_vertex *v = mesh->vertices.items;
@@ -220,6 +220,7 @@ static void write_attribute(const source *from, attribute_kind kind, const piece
         if (kind == POSITIONS) memcpy(out + 3 * i, &v[i].position, sizeof v[i].position);
         if (kind == WORDS) out[i] = word_of(from, &v[i]);
         if (kind == TRIANGLES) out[i] = v[i].triangle;
+        if (kind == PAINTS) out[i] = from->s->materials[word_of(from, &v[i]) & 0xffffu].colour;
         if (kind == NORMALS) out[i] = normal_of(from, &v[i]);
         if (kind == TEXCOORDS) {
             float at[2];
@@ -256,6 +257,7 @@ static result make_vertices(making *k)
         append(k, &from, TRIANGLES, s->buffers.triangles, 4, room, &b->triangles);
         append(k, &from, TEXCOORDS, s->buffers.texcoords, 8, room, &b->texcoords);
         append(k, &from, NORMALS, s->buffers.normals, 4, room, &b->normals);
+        append(k, &from, PAINTS, s->buffers.paints, 4, room, &b->paints);
         append(k, &from, ZEROS, s->buffers.others, 24, room, &b->others);
         append(k, &from, ZEROS, s->buffers.movers, 4, room, &b->movers);
     }

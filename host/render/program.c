@@ -16,13 +16,14 @@ static program_text text_of(program_kind kind)
     switch (kind) {
     case PROGRAM_ID: return (program_text){scene_vert, id_frag, "#define FAR_DEPTH\n", 1};
     case PROGRAM_SEE_THROUGH: return (program_text){scene_vert, see_through_frag, "", 1};
-    case PROGRAM_SHADED: return (program_text){scene_vert, frame_frag, "#define SHADED\n#define EYE_POSITION\n", 1};
+    case PROGRAM_SHADED: return (program_text){scene_vert, frame_frag, "#define SHADED\n", 1};
     case PROGRAM_ITEMS: return (program_text){scene_vert, frame_frag, "#define ITEMS\n", 1};
     case PROGRAM_ZONES: return (program_text){scene_vert, frame_frag, "#define ZONES\n#define EYE_POSITION\n", 1};
     case PROGRAM_DEPTH: return (program_text){scene_vert, frame_frag, "#define DEPTH\n#define EYE_POSITION\n", 1};
     case PROGRAM_OVERDRAW: return (program_text){scene_vert, frame_frag, "#define OVERDRAW\n", 1};
     case PROGRAM_BOXES: return (program_text){boxes_vert, boxes_frag, "", 0};
     case PROGRAM_PICTURE: return (program_text){picture_vert, picture_frag, "", 0};
+    case PROGRAM_DILATE: return (program_text){heat_vert, dilate_frag, "", 0};
     case PROGRAM_OVERLAY: return (program_text){overlay_vert, overlay_frag, "", 0};
     default: return (program_text){heat_vert, heat_frag, "", 0};
     }
@@ -62,17 +63,20 @@ static GLuint link_program(renderer *g, GLuint vertex, GLuint fragment)
 static GLuint build(renderer *g, program_kind kind, uint32_t variant)
 {
     const program_text text = text_of(kind);
-    char head[640];
+    char head[704];
     snprintf(head, sizeof head,
-             "#version 450 core\n#define WORD_TRANSLUCENT %uu\n#define WORD_CUT_OUT %uu\n#define WORD_SKY %uu\n#define WORD_TWO_SIDED %uu\n%s%s%s%s%s%s%s", (unsigned)WORD_TRANSLUCENT,
+             "#version 450 core\n#define WORD_TRANSLUCENT %uu\n#define WORD_CUT_OUT %uu\n#define WORD_SKY %uu\n#define WORD_TWO_SIDED %uu\n%s%s%s%s%s%s%s%s%s%s", (unsigned)WORD_TRANSLUCENT,
              (unsigned)WORD_CUT_OUT, (unsigned)WORD_SKY, (unsigned)WORD_TWO_SIDED, text.define, variant & VARIANT_CUT_OUT ? "#define CUT_OUT\n" : "",
              variant & VARIANT_TRANSLUCENT ? "#define TRANSLUCENT\n" : "", variant & VARIANT_SIDES ? "#define SIDES\n" : "",
              variant & VARIANT_CLIP ? "#define CLIP\n" : "", variant & VARIANT_KEEP_DEPTH ? "#define KEEP_DEPTH\n" : "",
-             variant & VARIANT_MOVERS ? "#define MOVERS\n" : "");
-    const char *const vertex_parts[] = {head, text.vertex};
-    const char *const fragment_parts[] = {head, text.is_surface ? surface_glsl : "", text.fragment};
-    const GLuint vertex = compile(g, GL_VERTEX_SHADER, vertex_parts, 2);
-    const GLuint fragment = vertex ? compile(g, GL_FRAGMENT_SHADER, fragment_parts, 3) : 0;
+             variant & VARIANT_MOVERS ? "#define MOVERS\n" : "", variant & VARIANT_LINEAR ? "#define LINEAR\n" : "",
+             variant & VARIANT_FRINGE ? "#define FRINGE\n" : "",
+             kind == PROGRAM_SHADED && variant & VARIANT_FLAT ? "#define FLAT\n#define EYE_POSITION\n" : "");
+    const char *const light = kind == PROGRAM_SHADED ? light_glsl : "";
+    const char *const vertex_parts[] = {head, light, text.vertex};
+    const char *const fragment_parts[] = {head, light, text.is_surface ? surface_glsl : "", text.fragment};
+    const GLuint vertex = compile(g, GL_VERTEX_SHADER, vertex_parts, 3);
+    const GLuint fragment = vertex ? compile(g, GL_FRAGMENT_SHADER, fragment_parts, 4) : 0;
     const GLuint program = fragment ? link_program(g, vertex, fragment) : 0;
     glDeleteShader(vertex); // 0 is fine
     glDeleteShader(fragment);

@@ -102,6 +102,8 @@ void renderer_end(renderer *g);    // translucent items of all runs drawn, then 
 uint32_t renderer_draw_calls(const renderer *g);   // since renderer_begin
 uint32_t renderer_state_changes(const renderer *g);
 result renderer_read(renderer *g, uint8_t *rgba, report *r); // width * height * 4, top row first, after renderer_end
+// The same frame's depths: 0 where nothing opaque and no picture of a culler was drawn. width * height, bottom row first.
+result renderer_read_depths(renderer *g, float *depths, report *r);
 // Right after renderer_id_picture, or renderer_end of RENDER_IDS: each pixel's owner (global triangle + 1, 0: nothing) and
 // its depth, bottom row first. The same triangle has the same depth in both, to the bit. Of two at one depth an id picture
 // has the lower, a frame the one drawn first. triangles or depths may be NULL; width * height of the picture each.
@@ -124,11 +126,39 @@ void renderer_query_latency(renderer *g, uint32_t steps);
 // renderer_collect for each of them: such frames allocate nothing afterwards, but what the driver does. After
 // renderer_query_latency, which says how many tests wait at once. RESULT_NO_MEMORY with a line; what was taken stays.
 result renderer_reserve(renderer *g, uint32_t tests_a_step, report *r);
+// Clipped to what lies inside their planes, opaque now; what is translucent is drawn whole at renderer_end, once.
+void renderer_draw_clipped(renderer *g, const render_layout *l, uint32_t zone, const cull_clipped *clipped);
+
+// How pictures are kept and shown. Not within a frame; forgets the pictures there are. Never called: linear, 8 bits, 256 MiB.
+// Coverage is a bit a texel. NEAREST takes texels as they are; LINEAR goes between them, where the outline runs halfway from a covered
+// texel to one that is not: a dB more inside of what is shown, for a quarter more a pixel (tests/render/measure_pictures.c).
+// 8_BITS: 4 bytes a texel. 5_BITS: 2, with steps of 8/255: alone a PSNR of 41 dB. Depth, where kept: 4 more.
+typedef enum picture_filter { PICTURE_LINEAR, PICTURE_NEAREST } picture_filter;
+typedef enum picture_format { PICTURE_8_BITS, PICTURE_5_BITS } picture_format;
+typedef struct picture_options {
+    picture_filter filter;
+    picture_format format;
+    uint64_t bytes_most; // of a layout's pictures. For more those not used for longest go, but none of this frame
+} picture_options;
+void renderer_picture_options(renderer *g, const picture_options *o);
+typedef struct render_picture_counts { // of a layout, since render_layout_slots
+    uint64_t bytes, bytes_peak;          // of its pictures; never over picture_options.bytes_most
+    uint64_t captures, pixels_captured;  // taken
+    uint64_t shown;                      // pictures
+    double pixels_shown;                 // area of the pictures shown, in the frame
+    uint64_t emptied, refused;           // slots for want of memory; captures that found none
+} render_picture_counts;
+render_picture_counts render_layout_picture_counts(const render_layout *l);
+// To 0 which slots of the zone hold no picture that can be shown now: never taken, emptied, or taken in another render_mode.
+void renderer_check_slots(renderer *g, const render_layout *l, uint32_t zone, uint8_t *slots, uint32_t count);
+
 // Room for the pictures of a layout: slot_counts by zone, at most 65,536 together; none until then. A zone captures into
 // slots below its count; a capture that finds no slot is not taken, and showing it draws the items. Forgets what was there.
 result render_layout_slots(render_layout *l, const uint32_t *slot_counts, report *r);
-void renderer_capture(renderer *g, const render_layout *l, uint32_t zone, const cull_capture *capture);
-void renderer_show(renderer *g, const render_layout *l, uint32_t zone, const cull_picture *picture);
+void renderer_capture(renderer *g, render_layout *l, uint32_t zone, const cull_capture *capture);
+// What a picture shows goes on for half a pixel beyond its outline where nothing else stands in the end: an outline that errs by less leaves
+// no gap.
+void renderer_show(renderer *g, render_layout *l, uint32_t zone, const cull_picture *picture);
 void renderer_forget_pictures(renderer *g);
 
 // ---- Over the picture, for people: after renderer_end, before renderer_read or renderer_present ----

@@ -59,7 +59,21 @@ static void set_blend(blend how)
     if (how == BLEND_ADD) glBlendFunc(GL_ONE, GL_ONE);
 }
 
+// What geometry has is its near distance by its own, and at least an ulp of that where rounding took most of it: over
+// 2^-60 m * 2^-31 / m * 2^-24 = 2^-115 for any camera of a near distance over 2^-60 m. Below that one number is enough for all
+// pictures of a frame: the test is GREATER, so of two at one depth the first stays in front. Above 2^-126 they are normal floats.
+static void set_range(depth_range range)
+{
+    static const double at[3] = {0, PICTURE_DEPTH, PICTURE_DEPTH * 0x1p-2};
+    glDepthRange(at[range], range == RANGE_OWN ? 1 : at[range]);
+}
+
 void state_pass(renderer *g, const pass_state *p)
+{
+    state_pass_at(g, p, RANGE_OWN);
+}
+
+void state_pass_at(renderer *g, const pass_state *p, depth_range range)
 {
     gl_state *s = &g->state;
     const uint32_t all = !s->known;
@@ -91,6 +105,11 @@ void state_pass(renderer *g, const pass_state *p)
         set_offset(p->offset);
         changes++;
     }
+    if (all || s->range != range) {
+        set_range(range);
+        changes++;
+    }
+    s->range = range;
     s->depth_test = p->depth_test;
     s->depth = p->depth;
     s->colour = p->colour;

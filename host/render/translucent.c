@@ -15,10 +15,26 @@ static double distance2_of(const renderer *g, uint32_t item)
     return sum;
 }
 
+// An item may stand in several pictures and be clipped at several seams: it is drawn once, as two layers of it would tint twice.
+static void drop_repeats(renderer *g)
+{
+    frame_state *f = &g->frame;
+    uint32_t kept = 0;
+    if (!f->may_repeat && f->translucent_count <= f->translucent_capacity / 2) return; // there is room for each twice
+    translucent_sort(f->translucent, f->translucent_count); // by distance, then by item: the same item lies together
+    for (uint32_t i = 0; i < f->translucent_count; ++i) {
+        const translucent_item *t = &f->translucent[i], *last = &f->translucent[kept ? kept - 1 : 0];
+        if (kept && last->item == t->item && last->layout == t->layout && last->place == t->place) continue;
+        f->translucent[kept++] = *t;
+    }
+    f->translucent_count = kept;
+}
+
 static void note(renderer *g, const layout_runs *r, uint32_t place)
 {
     frame_state *f = &g->frame;
-    if (f->translucent_count == f->translucent_capacity) { // an item came twice
+    if (f->translucent_count == f->translucent_capacity) drop_repeats(g);
+    if (f->translucent_count == f->translucent_capacity) { // an item came twice, by two lists
         frame_flush(g);
         translucent_draw(g);
     }
@@ -105,6 +121,7 @@ void translucent_draw(renderer *g)
 {
     frame_state *f = &g->frame;
     if (f->translucent_count == 0) return;
+    drop_repeats(g);
     frame_bind(g);
     if (frame_pass(g, &(draw_pass){.view = &f->view}, WORD_TRANSLUCENT)) {
         frame_state_pass(g, BLEND_MIX, DEPTH_OFF);

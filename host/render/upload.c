@@ -178,6 +178,24 @@ static GLuint words_of(const upload *u, const uint32_t *indices, const allocator
     return name;
 }
 
+static GLuint paints_of(const upload *u, const allocator *memory)
+{
+    const scene *s = u->s;
+    uint32_t *paints = memory_alloc(memory, s->position_count, sizeof *paints);
+    if (!paints) return 0;
+    for (size_t v = 0; v < s->position_count; ++v) paints[v] = s->materials[s->vertex_materials[v]].colour;
+    const GLuint name = attribute_of(u, paints, sizeof *paints, memory);
+    memory_free(memory, paints, s->position_count, sizeof *paints);
+    return name;
+}
+
+static uint32_t variant_of_normals(const scene *s)
+{
+    for (size_t v = 0; v < s->position_count; ++v)
+        if (!s->normals || !(s->normals[v] & 0xffffffu)) return VARIANT_FLAT;
+    return 0;
+}
+
 static GLuint triangles_of(upload *u, const allocator *memory)
 {
     const uint32_t count = u->s->position_count;
@@ -237,6 +255,8 @@ static result upload_vertices(scene_gpu *p, upload *u, const allocator *memory)
     if (s->mover_count && !(p->buffers.movers = movers_of(u, p->indices, memory))) return RESULT_NO_MEMORY;
     if (s->texcoords && !(p->buffers.texcoords = attribute_of(u, s->texcoords, 2 * sizeof(float), memory))) return RESULT_NO_MEMORY;
     if (s->normals && !(p->buffers.normals = attribute_of(u, s->normals, sizeof(uint32_t), memory))) return RESULT_NO_MEMORY;
+    if (!(p->buffers.paints = paints_of(u, memory))) return RESULT_NO_MEMORY;
+    p->variant |= variant_of_normals(s);
     p->elements = buffer_of(p->indices, s->index_count * sizeof(uint32_t));
     return RESULT_OK;
 }
@@ -352,6 +372,8 @@ GLuint vertex_array_of(const vertex_buffers *p, GLuint elements)
         attribute(name, 7, p->movers, 4);
         glVertexArrayAttribIFormat(name, 7, 1, GL_UNSIGNED_INT, 0);
     }
+    attribute(name, 8, p->paints, 4);
+    glVertexArrayAttribFormat(name, 8, 4, GL_UNSIGNED_BYTE, GL_TRUE, 0);
     if (p->normals) {
         attribute(name, 4, p->normals, 4);
         glVertexArrayAttribFormat(name, 4, 4, GL_BYTE, GL_TRUE, 0);
@@ -405,7 +427,7 @@ void scene_release(renderer *g)
     if (!p->scene) return;
     frame_flush(g);
     const vertex_buffers *v = &p->buffers;
-    const GLuint buffers[] = {v->positions, v->words, v->triangles, v->texcoords, v->normals, v->others, v->movers, p->elements,
+    const GLuint buffers[] = {v->positions, v->words, v->triangles, v->texcoords, v->normals, v->paints, v->others, v->movers, p->elements,
                               p->materials, p->triangle_items, p->item_zones, p->seen, p->counts};
     glDeleteVertexArrays(1, &p->vertices);
     glDeleteBuffers((GLsizei)(sizeof buffers / sizeof *buffers), buffers);
@@ -418,6 +440,7 @@ void scene_release(renderer *g)
     poses_close(&p->poses, g->memory);
     frame_release(g);
     g->id_target = NULL; // its depth is of another scene
+    g->costs_of = NULL;
     *p = (scene_gpu){0};
     state_forget(g);
 }

@@ -30,32 +30,13 @@ size_t explain_item(const frustum_index *index, const cull_visit *visit, uint32_
         length = snprintf(text, size, "there is no item %u", (unsigned)item);
         return length < 0 ? 0 : (size_t)length;
     }
-    const cull_box box = item_box(index, item);
-    float nearest = -INFINITY; // of the volumes, how deep the box is outside of the one that comes nearest to keeping it
-    uint32_t volume = 0, plane = 0;
-    for (uint32_t v = 0; v < visit->volume_count; v++) {
-        float worst = INFINITY;
-        uint32_t at = 0;
-        for (uint32_t k = 0; k < visit->volumes[v].plane_count; k++) {
-            const cull_plane p = visit->volumes[v].planes[k];
-            const float height = cull_plane_height(p, cull_box_corner(box, p.normal));
-            if (height < worst) {
-                worst = height;
-                at = k;
-            }
-        }
-        if (worst > nearest) {
-            nearest = worst;
-            volume = v;
-            plane = at;
-        }
-    }
-    if (!(nearest >= 0))
+    const cull_standing f = cull_standing_of(visit->volumes, visit->volume_count, item_box(index, item));
+    if (!(f.height >= 0))
         length = snprintf(text, size, "dropped: its box lies %g m outside plane %u of volume %u, and outside every other volume",
-                          (double)-nearest, (unsigned)plane, (unsigned)volume);
+                          (double)-f.height, (unsigned)f.plane, (unsigned)f.volume);
     else if (shows_only_its_back(index, visit->view, item))
         length = snprintf(text, size, "dropped: the wall shows only its back to the eye (backface=1)");
     else
-        length = snprintf(text, size, "kept: no plane of volume %u has its box outside", (unsigned)volume);
+        length = snprintf(text, size, "kept: no plane of volume %u has its box outside", (unsigned)f.volume);
     return length < 0 ? 0 : (size_t)length;
 }

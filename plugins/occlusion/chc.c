@@ -7,8 +7,10 @@
 
 enum { TESTS_AN_ENTRY = 3, FORGET_FRAMES = 16, PARTS_LEAST = 8 }; // FORGET_FRAMES: frames after which what joint tests taught counts half
 
-static const float TEST_POLYGONS = 2;   // what a test costs, its state changes and the way back of its answer with it
-static const float INTERVAL_MOST = 24; // frames
+static const float TEST_POLYGONS = 2;      // what a test costs, its state changes and the way back of its answer with it
+static const float DRAW_POLYGONS = 2;      // what an item costs beside its polygons: a change of state, as a test does
+static const float DELAY_POLYGONS = 0.5f; // what it costs to draw an item a step later
+static const float INTERVAL_MOST = 24;     // frames
 
 // ---- Memory ----
 
@@ -17,11 +19,11 @@ enum { PLANS = 6 };
 
 static void plans_fill(const occlusion_history *h, occlusion_chc *c, array_plan plans[PLANS])
 {
-    const size_t items = h->tree->item_count, known = h->tree->node_count + items, all = known + h->mover_capacity, tests = all * TESTS_AN_ENTRY;
+    const size_t seen = (size_t)h->tree->item_count + h->mover_capacity, all = h->tree->node_count + seen, tests = all * TESTS_AN_ENTRY;
     const array_plan made[PLANS] = {
-        {(void **)&c->past, known, sizeof *c->past},     {(void **)&c->seen_now, all, sizeof *c->seen_now},
+        {(void **)&c->past, all, sizeof *c->past},       {(void **)&c->seen_now, all, sizeof *c->seen_now},
         {(void **)&c->queue, all, sizeof *c->queue},     {(void **)&c->tests, tests, sizeof *c->tests},
-        {(void **)&c->members, tests, sizeof *c->members}, {(void **)&c->due, items, sizeof *c->due},
+        {(void **)&c->members, tests, sizeof *c->members}, {(void **)&c->due, seen, sizeof *c->due},
     };
     memcpy(plans, made, sizeof made);
 }
@@ -65,7 +67,7 @@ void chc_begin(occlusion_walk *w)
 {
     occlusion_chc *c = w->h->chc;
     c->queue_count = c->test_count = c->first_open = c->member_count = c->open_count = c->due_count = c->due_asked = 0;
-    c->waited = c->rounds = c->has_picture = c->marked_count = c->fills = c->idles = 0;
+    c->waited = c->rounds = c->has_picture = c->marked_count = c->fills = 0;
     c->is_first = w->h->seen_count == 0 || (w->visit->view->flags & CULL_VIEW_CUT);
 }
 
@@ -76,13 +78,37 @@ static int is_mover(const occlusion_walk *w, tree_entry e)
     return e >= walk_mover_entry(w, 0);
 }
 
+// By what it is remembered: an item's place; a mover's id, which stands behind these. Not of a node.
+static uint32_t known_place(const occlusion_walk *w, tree_entry e)
+{
+    return is_mover(w, e) ? w->visit->movers[e - walk_mover_entry(w, 0)].id : e - w->tree->node_count;
+}
+
+chc_past *chc_past_of(const occlusion_walk *w, tree_entry e)
+{
+    return &w->h->chc->past[tree_is_node(w->tree, e) ? e : w->tree->node_count + known_place(w, e)];
+}
+
+static int is_known(const occlusion_walk *w, const chc_past *p)
+{
+    return p->looked && p->looked == w->h->serial - 1;
+}
+
+static int is_held(const occlusion_walk *w, tree_entry e)
+{
+    if (w->h->chc->is_first) return 0;
+    if (is_mover(w, e)) return chc_past_of(w, e)->is_held && is_known(w, chc_past_of(w, e));
+    return !tree_is_node(w->tree, e) && (w->h->items[e - w->tree->node_count] & ITEM_SEEN);
+}
+
 static uint32_t bucket_of(const occlusion_walk *w, tree_entry e)
 {
-    if (is_mover(w, e)) return KEEP_MOVER;
-    const chc_past *p = &w->h->chc->past[e];
+    const chc_past *p = chc_past_of(w, e);
     const uint32_t serial = w->h->serial;
+    if (is_held(w, e)) return KEEP_HELD;
     if (p->looked == serial) return KEEP_OPENED;
-    return p->looked && p->looked == serial - 1 ? keep_bucket(serial - p->since) : KEEP_UNKNOWN;
+    if (is_known(w, p)) return keep_bucket(serial - p->since);
+    return is_mover(w, e) ? KEEP_MOVER : KEEP_UNKNOWN;
 }
 
 float chc_chance(const occlusion_walk *w, tree_entry e)
@@ -96,56 +122,117 @@ void chc_pull_down(occlusion_walk *w, tree_entry e)
     if (p->looked != w->h->serial - 1) p->since = p->looked = w->h->serial;
 }
 
-// After how many frames an item seen is looked at again: drawing it hidden for half of that, at the rate at which such items are
-// lost, costs as much as the test does. Spread at random, so that they do not all come in one frame.
+// What drawing it costs.
+static float polygons_of(const occlusion_walk *w, uint32_t place)
+{
+    const uint32_t polygons = place < w->tree->item_count ? w->tree->polygons[place] : MOVER_POLYGONS;
+    return (float)polygons + DRAW_POLYGONS;
+}
+
+// After how many frames what is seen is looked at again: drawing it hidden for half of that, at the rate at which such are lost,
+// costs as much as the test does.
+static float frames_best(const occlusion_walk *w, uint32_t place)
+{
+    const float rate = model_loses(&w->h->chc->model, w->h->chc->past[w->tree->node_count + place].sight);
+    return sqrtf(2 * TEST_POLYGONS / (rate * polygons_of(w, place)));
+}
+
+// Spread at random, so that they do not all come in one frame.
 static uint32_t interval_of(const occlusion_walk *w, uint32_t place)
 {
-    const occlusion_chc *c = w->h->chc;
-    const float rate = model_loses(&c->model, c->past[tree_entry_of_item(w->tree, place)].sight), polygons = (float)w->tree->polygons[place];
-    const float best = sqrtf(2 * TEST_POLYGONS / (rate * (polygons > 1 ? polygons : 1)));
-    const float spread = 0.5f + (float)(chc_random(place, w->h->serial) >> 8) / 16777216.0f, frames = best * spread + 0.5f;
+    const float spread = 0.5f + (float)(chc_random(place, w->h->serial) >> 8) / 16777216.0f, frames = frames_best(w, place) * spread + 0.5f;
     return frames < 1 ? 1 : (uint32_t)(frames < INTERVAL_MOST ? frames : INTERVAL_MOST);
+}
+
+int chc_is_due(const occlusion_walk *w, tree_entry e)
+{
+    return (int32_t)(w->h->serial - chc_past_of(w, e)->due) >= 0;
+}
+
+// The test is due in any case; before the drawing it delays that by a step, which other tests of the frame need as well.
+int chc_is_doubtful(const occlusion_walk *w, tree_entry e)
+{
+    const chc_past *p = chc_past_of(w, e);
+    const float frames = (float)(w->h->serial - p->since), lost = model_loses(&w->h->chc->model, p->sight) * frames;
+    return (lost < 1 ? lost : 1) * polygons_of(w, known_place(w, e)) > DELAY_POLYGONS;
+}
+
+// Hidden by now it would be drawn until its time comes.
+int chc_is_fresh(const occlusion_walk *w, tree_entry e)
+{
+    const uint32_t place = known_place(w, e);
+    const float frames = frames_best(w, place);
+    return chc_past_of(w, e)->is_fresh && model_fresh(&w->h->chc->model) * polygons_of(w, place) * (frames < INTERVAL_MOST ? frames : INTERVAL_MOST) > TEST_POLYGONS;
 }
 
 static void note_hidden(occlusion_walk *w, tree_entry e)
 {
     occlusion_chc *c = w->h->chc;
+    chc_past *p = chc_past_of(w, e);
     ratio_count(&c->model.keep[bucket_of(w, e)], 1, 1);
-    if (is_mover(w, e)) return;
-    chc_past *p = &c->past[e];
-    if (p->looked != w->h->serial - 1) p->since = w->h->serial;
+    if (!is_known(w, p) || is_held(w, e)) p->since = w->h->serial;
     p->looked = w->h->serial;
+    p->is_held = 0;
+}
+
+// Tested before it was drawn: as good an answer as one of the visible queue.
+static void count_held(occlusion_walk *w, tree_entry e, uint32_t pixels)
+{
+    const chc_past *p = chc_past_of(w, e);
+    const uint32_t frames = w->h->serial - p->since;
+    if (is_held(w, e)) ratio_count(&w->h->chc->model.lost[p->sight], pixels == 0, frames && frames < 64 ? frames : 1);
 }
 
 void chc_note_seen(occlusion_walk *w, tree_entry e, uint32_t pixels)
 {
     occlusion_chc *c = w->h->chc;
     const cull_box box = walk_box(w, e);
+    const uint32_t serial = w->h->serial;
+    const int was_held = is_held(w, e);
+    chc_past *p = chc_past_of(w, e);
     ratio_count(&c->model.keep[bucket_of(w, e)], 0, 1);
-    c->seen_now[e] = w->h->serial;
+    c->seen_now[e] = serial;
     heap_push(w->h->heap, &w->h->heap_count, (heap_entry){walk_key(w, &box), e});
-    if (is_mover(w, e)) return;
-    c->past[e] = (chc_past){.since = w->h->serial, .sight = (uint8_t)sight_bucket(pixels)};
-    if (!tree_is_node(w->tree, e)) c->past[e].due = w->h->serial + interval_of(w, e - w->tree->node_count);
+    *p = (chc_past){.since = serial, .sight = (uint8_t)sight_bucket(pixels)};
+    if (tree_is_node(w->tree, e)) return;
+    p->due = serial + interval_of(w, known_place(w, e));
+    p->is_fresh = !was_held;
+    if (!is_mover(w, e)) return;
+    p->looked = serial;
+    p->is_held = 1;
+}
+
+// ---- Movers ----
+
+int chc_holds_mover(const occlusion_walk *w, uint32_t mover)
+{
+    return is_held(w, walk_mover_entry(w, mover));
+}
+
+void chc_hold_mover(occlusion_walk *w, uint32_t mover)
+{
+    chc_past_of(w, walk_mover_entry(w, mover))->looked = w->h->serial;
 }
 
 // ---- The visible queue ----
 
-void chc_due_add(occlusion_walk *w, uint32_t place)
+void chc_due_add(occlusion_walk *w, tree_entry e)
 {
     occlusion_chc *c = w->h->chc;
-    c->due[c->due_count++] = place;
+    c->due[c->due_count++] = e;
+}
+
+static void ask_visible(occlusion_walk *w, tree_entry e)
+{
+    const cull_box box = walk_box(w, e);
+    walk_put_test(w, &box, CHC_VISIBLE | known_place(w, e));
 }
 
 uint32_t chc_ask_due(occlusion_walk *w, uint32_t most)
 {
     occlusion_chc *c = w->h->chc;
     uint32_t asked = 0;
-    while (c->due_asked < c->due_count && asked < most && chc_has_room(w)) {
-        const uint32_t place = c->due[c->due_asked++];
-        walk_put_test(w, &w->tree->boxes[place], CHC_VISIBLE | place);
-        asked++;
-    }
+    for (; c->due_asked < c->due_count && asked < most && chc_has_room(w); asked++) ask_visible(w, c->due[c->due_asked++]);
     return asked;
 }
 
@@ -158,7 +245,7 @@ uint32_t chc_ask_early(occlusion_walk *w)
         chc_past *p = &h->chc->past[tree_entry_of_item(w->tree, place)];
         if ((int32_t)(p->due - h->serial) <= 0) continue; // asked, or near
         p->due = h->serial;
-        walk_put_test(w, &w->tree->boxes[place], CHC_VISIBLE | place);
+        ask_visible(w, tree_entry_of_item(w->tree, place));
         h->counters.early++;
         return 1;
     }
@@ -167,29 +254,43 @@ uint32_t chc_ask_early(occlusion_walk *w)
 
 // ---- Answers ----
 
-static int is_held_for_seen(const occlusion_walk *w, uint32_t place)
+// place: an item's, or a mover's id.
+static chc_past *held_past(const occlusion_walk *w, uint32_t place)
 {
-    return place < w->tree->item_count && ((w->h->items[place] & ITEM_SEEN) || w->h->drawn[place] == w->h->serial);
+    const occlusion_history *h = w->h;
+    if (place >= w->tree->item_count + h->mover_capacity) return NULL;
+    chc_past *p = &h->chc->past[w->tree->node_count + place];
+    if (place >= w->tree->item_count) return p->is_held ? p : NULL;
+    return (h->items[place] & ITEM_SEEN) || h->drawn[place] == h->serial ? p : NULL;
 }
 
 // All are counted before one is judged by the counts.
 static void count_visible(occlusion_walk *w, const cull_answer *a)
 {
-    const uint32_t place = a->tag & ~CHC_VISIBLE;
-    if (!is_held_for_seen(w, place)) return;
-    const chc_past *p = &w->h->chc->past[tree_entry_of_item(w->tree, place)];
+    const chc_past *p = held_past(w, a->tag & ~CHC_VISIBLE);
+    if (!p) return;
     const uint32_t frames = w->h->serial - a->age - p->since;
-    ratio_count(&w->h->chc->model.lost[p->sight], a->pixels == 0, frames && frames < 64 ? frames : 1);
+    if (p->is_fresh && !frames) ratio_count(&w->h->chc->model.fresh, a->pixels == 0, 1);
+    else ratio_count(&w->h->chc->model.lost[p->sight], a->pixels == 0, frames && frames < 64 ? frames : 1);
+}
+
+static void hear_mover(occlusion_walk *w, chc_past *p, uint32_t pixels)
+{
+    ledger_enter(&w->h->movers, LEDGER_TEST, pixels ? 0 : MOVER_POLYGONS);
+    ledger_enter_zone(&w->h->zone, LEDGER_TEST, pixels ? 0 : MOVER_POLYGONS);
+    p->is_held = pixels != 0;
 }
 
 static void hear_visible(occlusion_walk *w, const cull_answer *a)
 {
-    const uint32_t place = a->tag & ~CHC_VISIBLE, serial = w->h->serial;
-    if (!is_held_for_seen(w, place)) return;
-    chc_past *p = &w->h->chc->past[tree_entry_of_item(w->tree, place)];
-    walk_hear_drawn(w, place, a->pixels);
-    p->since = p->looked = serial;
-    p->due = p->failures = 0;
+    const uint32_t place = a->tag & ~CHC_VISIBLE, serial = w->h->serial, is_item = place < w->tree->item_count;
+    chc_past *p = held_past(w, place);
+    if (!p) return;
+    if (is_item) walk_hear_drawn(w, place, a->pixels);
+    else hear_mover(w, p, a->pixels);
+    p->since = serial;
+    if (is_item || !a->age) p->looked = serial;
+    p->due = p->failures = p->is_fresh = 0;
     if (!a->pixels) return;
     p->sight = (uint8_t)sight_bucket(a->pixels);
     p->due = serial + interval_of(w, place);
@@ -202,8 +303,7 @@ static void part(occlusion_walk *w, const chc_test *t)
     occlusion_chc *c = w->h->chc;
     for (uint32_t i = 0; i < t->count; i++) {
         const tree_entry e = c->members[t->first + i];
-        if (is_mover(w, e)) continue;
-        chc_past *p = &c->past[e];
+        chc_past *p = chc_past_of(w, e);
         p->joint = (uint32_t)(t - c->tests);
         if (t->is_known) p->mate = t->count < PARTS_LEAST ? 0 : c->members[t->first + i * 4 / t->count * t->count / 4] + 1;
         if (t->is_known) continue;
@@ -225,9 +325,9 @@ static void settle_joint(occlusion_walk *w, const chc_test *t, uint32_t pixels)
     }
     for (uint32_t i = t->first; i < t->first + t->count; i++) {
         const tree_entry e = c->members[i];
-        if (is_mover(w, e)) continue;
-        c->past[e].mate = c->members[t->first] + 1;
-        if ((int32_t)(c->past[e].due - w->h->serial) <= 0) c->past[e].failures = 0;
+        chc_past *p = chc_past_of(w, e);
+        p->mate = c->members[t->first] + 1;
+        if ((int32_t)(p->due - w->h->serial) <= 0) p->failures = 0;
     }
 }
 
@@ -235,11 +335,11 @@ static void settle_joint(occlusion_walk *w, const chc_test *t, uint32_t pixels)
 static void explain_joint(occlusion_walk *w, tree_entry e)
 {
     occlusion_chc *c = w->h->chc;
-    if (is_mover(w, e) || c->past[e].joint >= c->test_count) return;
-    const chc_test *t = &c->tests[c->past[e].joint];
+    const uint32_t joint = chc_past_of(w, e)->joint;
+    if (joint >= c->test_count) return;
+    const chc_test *t = &c->tests[joint];
     for (uint32_t i = t->first; i < t->first + t->count; i++) {
-        if (is_mover(w, c->members[i])) continue;
-        chc_past *p = &c->past[c->members[i]];
+        chc_past *p = chc_past_of(w, c->members[i]);
         p->due = p->failures = 0;
     }
 }
@@ -247,12 +347,13 @@ static void explain_joint(occlusion_walk *w, tree_entry e)
 static void settle(occlusion_walk *w, chc_test *t, uint32_t pixels)
 {
     occlusion_chc *c = w->h->chc;
-    c->fills = c->idles = t->is_open = 0;
+    c->fills = t->is_open = 0;
     c->open_count--;
     if (t->count > 1) settle_joint(w, t, pixels);
     for (uint32_t i = t->first; i < t->first + t->count; i++) {
         const tree_entry e = c->members[i];
         walk_settle(w, &(walk_finding){e, pixels, t->count, t->step_cost});
+        if (!pixels || t->count == 1) count_held(w, e, pixels);
         if (!pixels) note_hidden(w, e);
         else if (t->count == 1) {
             if (t->is_split) explain_joint(w, e);

@@ -9,11 +9,11 @@
 
 enum { CHC_FAILURES_MOST = 5 };
 
-// Tags: with this bit an item's place, of an item drawn for seen; else a place in occlusion_chc.tests.
+// Tags: with this bit an item's place or a mover's id, of what is drawn for seen; else a place in occlusion_chc.tests.
 #define CHC_VISIBLE 0x40000000u
 #define CHC_ALONE (UINT64_C(1) << 63) // a joint test of this frame did not hide it
 
-// Of a node or an item. looked is this frame and since too: its parent came into sight, nothing is known of it alone.
+// Of a node, an item or, by its id, a mover. looked is this frame and since too: its parent came into sight, nothing is known of it alone.
 typedef struct chc_past {
     uint32_t since;  // the frame from which it has been hidden, or held for seen, without a gap
     uint32_t looked; // the last frame that knew
@@ -21,7 +21,9 @@ typedef struct chc_past {
     uint32_t mate;   // 1 + the entry that it was tested together with last, and found hidden; 0: alone
     uint32_t due;    // seen: when it is tested again. Hidden: until then joint tests with it are doubted
     uint8_t sight;   // bucket of its pixels, as last counted
-    uint8_t failures, spare[2];
+    uint8_t failures;
+    uint8_t is_held;  // of a mover: seen when last looked at
+    uint8_t is_fresh; // found seen in this frame, behind a part of it
 } chc_past;
 
 typedef struct chc_test {
@@ -33,16 +35,16 @@ typedef struct chc_test {
 } chc_test;
 
 typedef struct occlusion_chc {
-    chc_past *past;     // by node, then by item
+    chc_past *past;     // by node, then by item, then by mover's id; see chc_past_of
     uint32_t *seen_now; // by entry: serial of the frame that answered "seen"
     uint64_t *queue;    // the invisible queue: CHC_ALONE or 0, place of its first item, entry
     chc_test *tests;    // of this frame
     tree_entry *members;
-    uint32_t *due;      // the visible queue: places
+    tree_entry *due;    // the visible queue
     chc_model model;
     chc_picture picture; // of the first marked_count items drawn in this frame
     uint32_t queue_count, test_count, first_open, member_count, member_most, open_count, due_count, due_asked, waited, rounds, has_picture, marked_count;
-    uint32_t fills, idles; // steps since an answer came, without work that the frame needs; without any
+    uint32_t fills; // steps since an answer came, without work that the frame needs
     uint32_t batches, is_first; // batches: tests are saved up; is_first: nothing to go by
 } occlusion_chc;
 
@@ -58,8 +60,17 @@ void chc_hear(occlusion_walk *w);
 void chc_queue_add(occlusion_walk *w, tree_entry e, uint64_t how); // how: CHC_ALONE or 0
 // Asks for the queue's tests, neighbours likely to be hidden in one; at most `most` tests, of what there is room for.
 void chc_ask(occlusion_walk *w, uint32_t most);
-// An item drawn for seen is tested at the end of this frame or while answers are out.
-void chc_due_add(occlusion_walk *w, uint32_t place);
+// An item or mover drawn for seen is tested at the end of this frame or while answers are out.
+void chc_due_add(occlusion_walk *w, tree_entry e);
+// Of what was seen before: it is to be tested again; it is lost so likely that the test comes before the drawing.
+int chc_is_due(const occlusion_walk *w, tree_entry e);
+int chc_is_doubtful(const occlusion_walk *w, tree_entry e);
+// Of what a test of this frame found seen: to be tested again at its end.
+int chc_is_fresh(const occlusion_walk *w, tree_entry e);
+// The mover was seen last frame; is drawn for seen in this one.
+int chc_holds_mover(const occlusion_walk *w, uint32_t mover);
+void chc_hold_mover(occlusion_walk *w, uint32_t mover);
+chc_past *chc_past_of(const occlusion_walk *w, tree_entry e);
 uint32_t chc_ask_due(occlusion_walk *w, uint32_t most); // how many
 // One more, whose time has not come: there is no other work while answers are out. 0: no such item.
 uint32_t chc_ask_early(occlusion_walk *w);

@@ -10,8 +10,8 @@
 #include <math.h>
 
 // Frames that a thing has been hidden: none told, 1, 2, 3, to 5, to 9, to 17, more. Then: its parent came into sight in this
-// frame; a mover.
-enum { KEEP_UNKNOWN, KEEP_SHORT, KEEP_LONGEST = 7, KEEP_OPENED, KEEP_MOVER, KEEP_COUNT };
+// frame; a mover of which nothing is told; held for seen till now.
+enum { KEEP_UNKNOWN, KEEP_SHORT, KEEP_LONGEST = 7, KEEP_OPENED, KEEP_MOVER, KEEP_HELD, KEEP_COUNT };
 // How much larger the box round several is than they are, by surface.
 enum { GROWTH_COUNT = 6, VERDICT_COUNT = 3 }; // verdicts: chc_picture.h
 enum { SIGHT_COUNT = 8 }; // pixels of an item: below 4, 16, 64 ... 65,536, and more
@@ -22,6 +22,7 @@ typedef struct chc_model {
     chc_ratio keep[KEEP_COUNT];    // hidden again, of those tested
     chc_ratio joint[VERDICT_COUNT][GROWTH_COUNT]; // joint tests answered "hidden", and how many should be by their parts; in 1/1024
     chc_ratio mates;               // the same again, hidden again
+    chc_ratio fresh;               // hidden at the end of a frame, of those found seen in it
     chc_ratio lost[SIGHT_COUNT];   // items found hidden, of frames that they were held for seen
 } chc_model;
 
@@ -54,7 +55,7 @@ static inline uint32_t keep_bucket(uint32_t frames)
 
 static inline float model_keeps(const chc_model *m, uint32_t bucket)
 {
-    static const float fitted[KEEP_COUNT] = {0.29f, 0.7325f, 0.8953f, 0.9551f, 0.98f, 0.989f, 0.99f, 0.99f, 0.5f, 0.8f};
+    static const float fitted[KEEP_COUNT] = {0.29f, 0.7325f, 0.8953f, 0.9551f, 0.98f, 0.989f, 0.99f, 0.99f, 0.5f, 0.8f, 0.2f};
     return ratio_value(&m->keep[bucket], fitted[bucket], 8);
 }
 
@@ -86,6 +87,11 @@ static inline uint32_t sight_bucket(uint32_t pixels)
         bucket++;
     }
     return bucket;
+}
+
+static inline float model_fresh(const chc_model *m)
+{
+    return ratio_value(&m->fresh, 0.15f, 20);
 }
 
 // A frame, of an item with so many pixels.

@@ -17,7 +17,7 @@ static uint32_t place_of_entry(const occlusion_walk *w, tree_entry e)
 // With whom it was tested last frame; itself where with none.
 static tree_entry leader_of(const occlusion_walk *w, tree_entry e)
 {
-    if (e >= walk_mover_entry(w, 0)) return e;
+    if (e >= walk_mover_entry(w, 0)) return e; // a mate's place may be another's in the next frame
     const chc_past *p = &w->h->chc->past[e];
     return p->mate && p->looked && p->looked == w->h->serial - 1 ? p->mate - 1 : e;
 }
@@ -67,8 +67,7 @@ typedef struct joint {
 static float doubt_of(const occlusion_walk *w, tree_entry e)
 {
     static const float doubts[CHC_FAILURES_MOST + 1] = {1, 0.8f, 0.7f, 0.6f, 0.5f, 0.5f};
-    if (e >= walk_mover_entry(w, 0)) return 1;
-    const chc_past *p = &w->h->chc->past[e];
+    const chc_past *p = chc_past_of(w, e);
     return (int32_t)(p->due - w->h->serial) > 0 ? doubts[p->failures] : 1;
 }
 

@@ -24,9 +24,19 @@ size_t explain_item(const occlusion_walk *w, uint32_t item, char *text, size_t s
     return length < 0 ? 0 : (size_t)length;
 }
 
-size_t explain_seen(int is_seen, char *text, size_t size)
+size_t explain_sight(const occlusion_walk *w, uint32_t item, hiz_sight sight, char *text, size_t size)
 {
-    const int length = snprintf(text, size, "%s", is_seen ? "kept: its box may be seen past what was drawn into the pyramid before it"
-                                                          : "dropped: outside every volume, left out before, or hidden behind what was drawn into the pyramid before it");
+    const uint32_t place = w->places ? w->places[item] : item;
+    const cull_box *box = &w->tree->boxes[place];
+    occlusion_walk volumes = *w;
+    volumes.takes_candidates = 0; // hiz holds candidates against them too
+    const char *why = "kept: its box may be seen past what was drawn into the pyramid before it";
+    if (sight == HIZ_UNTESTED) why = "kept: nothing is tested in such a view: its matrix has no inverse, or the picture is too large";
+    else if (sight == HIZ_SEEN && walk_is_near(w, walk_key(w, box))) why = "kept: the eye is in or near its box, which is not tested then";
+    else if (sight != HIZ_SEEN && walk_is_masked(w, place)) why = "dropped: a culler before left it out, or a picture stands for it";
+    else if (sight != HIZ_SEEN && walk_place_of(&volumes, box) == WALK_OUT) why = "dropped: its box lies outside every volume";
+    else if (sight == HIZ_HIDDEN) why = "dropped: what nearer items drew into the pyramid hides its box, or one around it";
+    else if (sight == HIZ_NO_PIXEL) why = "dropped: no pixel's centre lies in its box";
+    const int length = snprintf(text, size, "%s", why);
     return length < 0 ? 0 : (size_t)length;
 }

@@ -76,6 +76,12 @@ void history_lose(occlusion_history *h, uint32_t place)
     history_keep(h, h->tree->item_nodes[place], -1);
 }
 
+void history_forget(occlusion_history *h)
+{
+    for (uint32_t i = 0; i < h->seen_count; i++) history_lose(h, h->seen_list[i]);
+    h->seen_count = h->drawn_count = 0;
+}
+
 void history_turn(occlusion_history *h)
 {
     for (uint32_t i = 0; i < h->seen_count; i++) {

@@ -57,6 +57,9 @@ typedef struct occlusion_history {
     struct occlusion_chc *chc; // of method=chc, else NULL
     uint32_t seen_count, drawn_count, heap_count, pending_count, tested_count;
     uint32_t rested; // serial of the last frame that drew all without tests
+    uint32_t tried, sampled_step, gained_before; // serial of the last frame that tested a sample first, in which step, and the zone's gain until then
+    uint32_t gave_up; // serial of the last frame in which the sample said no
+    uint32_t sampled_items, sample_every; // of a frame at rest: items looked at; of which one in so many is tested
     uint32_t serial, last_frame, first_run, mask_used, says_places, phase, mover_capacity, test_most, is_testing;
 } occlusion_history;
 
@@ -73,6 +76,7 @@ void history_close(const cull_host *host, occlusion_history *h);
 void history_see(occlusion_history *h, uint32_t place);
 void history_lose(occlusion_history *h, uint32_t place);
 void history_keep(occlusion_history *h, uint32_t node, int change); // change: +1 or -1, at the node and above
+void history_forget(occlusion_history *h); // what was seen, and what the frame drew
 // Ends a frame: what was seen and is not drawn any more is forgotten, the drawn is the seen of the next.
 void history_turn(occlusion_history *h);
 

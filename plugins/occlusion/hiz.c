@@ -6,6 +6,8 @@
 #include <string.h>
 
 enum {
+    CELLS_ITEMS = 4096, // up to so many boxes, ...
+    CELLS_ROWS = 720,   // ... and in a picture of so many rows, two of these share a depth
     ALIGN = 64,
     SKEW = 2048 + 64, // else a tile's two words lie 4096 bytes times a number apart, and a store to one delays loads of the other
 };
@@ -22,15 +24,26 @@ static cull_result option_refused(const cull_host *host, const char *key, const 
 
 cull_result hiz_options_read(const cull_host *host, const char *const *values, hiz_options *out)
 {
-    const char *const prune = values[0], *const threads = values[1], *const isa = values[2];
+    const char *const prune = values[0], *const threads = values[1], *const isa = values[2], *const pixels = values[3];
     const int prunes = strcmp(prune, "on") == 0;
     if (!prunes && strcmp(prune, "off") != 0) return option_refused(host, "prune", prune, "on or off");
     if (!threads[0] || threads[1] || !strchr("1248", threads[0])) return option_refused(host, "threads", threads, "1, 2, 4 or 8");
+    out->pixels = strcmp(pixels, "auto") == 0 ? 0 : (uint32_t)(pixels[0] - '0');
+    if (out->pixels && (!pixels[0] || pixels[1] || !strchr("124", pixels[0]))) return option_refused(host, "pixels", pixels, "auto, 1, 2 or 4");
     out->kernel = hiz_kernel_of(isa);
     if (!out->kernel) return option_refused(host, "isa", isa, "auto, avx512, avx2 or plain, and one that this CPU has");
     out->threads = (uint32_t)(threads[0] - '0');
     out->prunes = prunes != 0;
     return CULL_OK;
+}
+
+// Where few boxes hide a few more, each is large on a large picture: what a coarser one loses at its edges is little, and drawing it is most of
+// the work. Polygons of a mesh would part at every edge between them.
+static hiz_size cell_of(const hiz *h, const cull_view *view)
+{
+    const int is_coarse = !h->index.shapes.face_count && h->index.tree.item_count <= CELLS_ITEMS && view->height_px >= CELLS_ROWS;
+    const uint32_t pixels = h->options.pixels ? h->options.pixels : is_coarse ? 2 : 1;
+    return (hiz_size){pixels == 4 ? 2 : 1, pixels > 1 ? 2 : 1};
 }
 
 cull_result hiz_make(const cull_host *host, const cull_zone *zone, const hiz_options *options, hiz *out)
@@ -273,7 +286,7 @@ static void frame_run(const hiz *h, const cull_visit *visit, hiz_room *room, hiz
 {
     hiz_view view;
     room_part(h, visit->scratch, room);
-    hiz_view_make(visit->view, (hiz_size){HIZ_WIDTH_MOST, HIZ_HEIGHT_MOST}, &view);
+    hiz_view_make(visit->view, (hiz_size){HIZ_WIDTH_MOST, HIZ_HEIGHT_MOST}, cell_of(h, visit->view), &view);
     f->h = h;
     f->band_count = h->options.threads;
     const int is_part = active_mark(&h->index.tree, visit, room);
@@ -301,13 +314,23 @@ cull_progress hiz_step(const hiz *h, const uint32_t *numbers, const cull_visit *
     return CULL_DONE;
 }
 
-int hiz_sees(const hiz *h, const cull_visit *visit, uint32_t item)
+static uint32_t box_seen(hiz_frame *f, const cull_box *box)
 {
+    const cull_mover one = {.box = *box};
+    return movers_seen(f, &one, 1);
+}
+
+hiz_sight hiz_look(const hiz *h, const cull_visit *visit, uint32_t item)
+{
+    const hiz_tree *t = &h->index.tree;
     hiz_room room;
     hiz_frame f;
     frame_run(h, visit, &room, &f);
     for (uint32_t i = 0; i < f.band_count; i++)
         for (uint32_t k = 0; k < f.walks[i].seen_count; k++)
-            if (f.walks[i].seen[k] == h->index.tree.slots[item]) return 1;
-    return 0;
+            if (f.walks[i].seen[k] == t->slots[item]) return f.views[i].is_usable ? HIZ_SEEN : HIZ_UNTESTED;
+    for (uint32_t i = 0; i < f.band_count; i++) hiz_buffer_clear(&f.buffers[i]);
+    const float *b = t->blocks[0] + (size_t)(t->slots[item] / HIZ_WIDTH) * HIZ_BLOCK_FLOATS + t->slots[item] % HIZ_WIDTH;
+    const cull_box box = {{b[0], b[16], b[32]}, {b[48], b[64], b[80]}};
+    return box_seen(&f, &box) ? HIZ_HIDDEN : HIZ_NO_PIXEL;
 }

@@ -51,6 +51,9 @@ typedef struct hiz_rectangle {
     float depth;
 } hiz_rectangle;
 
+// A tile of a rectangle: those before it, row by row, hide their part of the rectangle, as they will for the rest of the frame.
+typedef struct hiz_place { int16_t column, row; } hiz_place;
+
 typedef struct hiz_buffer {
     float *far;       // by tile
     uint32_t *owners; // by tile

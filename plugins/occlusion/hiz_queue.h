@@ -4,6 +4,8 @@
 #ifndef OCCLUSION_HIZ_QUEUE_H
 #define OCCLUSION_HIZ_QUEUE_H
 
+#include "hiz_buffer.h"
+
 #include <stdint.h>
 #include <string.h>
 
@@ -22,6 +24,7 @@ typedef struct queue_entry {
     uint32_t polygon_count; // drawn when it was tested last
     int32_t next;
     int16_t x0, y0, x1, y1;
+    hiz_place open; // of the rectangle
 } queue_entry;
 
 typedef struct queue_key { uint64_t rank; int32_t entry, reserved; } queue_key; // rank: depth's bits over the number's complement

@@ -33,18 +33,19 @@ static inline void line_add(polygon_setup *s, double a, double b, double c, doub
 {
     hiz_polygon *p = s->out;
     const double margin = inset * (fabs(a) + fabs(b));
+    const double *const cell = s->view->inset_cell, inwards = margin + (cell[0] * fabs(a) + cell[1] * fabs(b));
     if (a == 0 && b == 0) { // the same everywhere; all 0: an edge without length
         s->is_sound &= c >= 0;
         return;
     }
     if (fabs(a) <= LEVEL_EDGE * fabs(b)) {
-        const double row = (margin + fabs(a) * HIZ_WIDTH_MOST - c) / b;
+        const double row = (inwards + fabs(a) * HIZ_WIDTH_MOST - c) / b;
         if (b > 0 && row > s->low) s->low = row;
         if (b < 0 && row < s->high) s->high = row;
         s->is_sound &= row == row;
         return;
     }
-    const double at = (margin - c) / a, slope = fabs(b) > DENORMAL_GUARD * fabs(a) ? -b / a : 0;
+    const double at = (inwards - c) / a, slope = fabs(b) > DENORMAL_GUARD * fabs(a) ? -b / a : 0;
     uint32_t *count = a > 0 ? &p->left_count : &p->right_count;
     s->is_sound &= *count < HIZ_EDGES_MOST && fabs(at) < 1e30 && fabs(slope) < 1e30;
     if (!s->is_sound) return;

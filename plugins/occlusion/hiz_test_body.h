@@ -35,15 +35,20 @@ static inline int tile_hides(const hiz_buffer *b, const hiz_rectangle *q, int32_
 
 typedef struct tile_span { int32_t column0, row0, column1, row1; } tile_span; // inclusive
 
-static inline int tiles_hide(const hiz_buffer *b, const hiz_rectangle *q, const tile_span *t)
+// at: where to begin; where it ended, if it hides not all.
+static inline int tiles_hide(const hiz_buffer *b, const hiz_rectangle *q, const tile_span *t, hiz_place *at)
 {
     const hiz_f depth = f_set(q->depth);
-    for (int32_t row = t->row0; row <= t->row1; row++)
-        for (int32_t column = t->column0; column <= t->column1; column += HIZ_LANES) {
+    int32_t first = at->column;
+    for (int32_t row = at->row; row <= t->row1; row++, first = t->column0)
+        for (int32_t column = first; column <= t->column1; column += HIZ_LANES) {
             const uint32_t there = hiz_low_lanes((uint32_t)(t->column1 - column + 1));
-            uint32_t open = there & ~f_above(f_load(b->far + row * b->pitch + column), depth);
-            for (; open; open &= open - 1)
-                if (!tile_hides(b, q, column + __builtin_ctz(open), row)) return 0;
+            for (uint32_t open = there & ~f_above(f_load(b->far + row * b->pitch + column), depth); open; open &= open - 1) {
+                const int32_t here = column + __builtin_ctz(open);
+                if (tile_hides(b, q, here, row)) continue;
+                *at = (hiz_place){(int16_t)here, (int16_t)row};
+                return 0;
+            }
         }
     return 1;
 }
@@ -62,7 +67,7 @@ static inline void blocks_refresh(hiz_buffer *b, int32_t block_row, int32_t bloc
 }
 
 // Block by block; what a block's far depth does not hide is looked at tile by tile.
-static inline int blocks_hide(hiz_buffer *b, const hiz_rectangle *q, const tile_span *t)
+static inline int blocks_hide(hiz_buffer *b, const hiz_rectangle *q, const tile_span *t, hiz_place *open)
 {
     const int32_t first = t->column0 >> 3, last = t->column1 >> 3;
     for (int32_t block_row = t->row0 >> 3; block_row <= t->row1 >> 3; block_row++) {
@@ -74,7 +79,8 @@ static inline int blocks_hide(hiz_buffer *b, const hiz_rectangle *q, const tile_
             const int32_t column = block * HIZ_BLOCK_TILES;
             const tile_span in = {t->column0 > column ? t->column0 : column, t->row0 > row ? t->row0 : row,
                                   t->column1 < column + 7 ? t->column1 : column + 7, t->row1 < row + 7 ? t->row1 : row + 7};
-            if (!tiles_hide(b, q, &in)) return 0;
+            *open = (hiz_place){(int16_t)in.column0, (int16_t)in.row0};
+            if (!tiles_hide(b, q, &in, open)) return 0;
         }
     }
     return 1;
@@ -82,9 +88,11 @@ static inline int blocks_hide(hiz_buffer *b, const hiz_rectangle *q, const tile_
 
 enum { TEST_COLUMNS = 24, TEST_ROWS = 12 }; // tiles of a rectangle from which on blocks are looked at first
 
-static int rectangle_hidden(hiz_buffer *b, const hiz_rectangle *q)
+// open: a tile to begin with; of a rectangle tested before the one that was not hidden then.
+static int rectangle_hidden(hiz_buffer *b, const hiz_rectangle *q, hiz_place *open)
 {
     const tile_span t = {q->x0 >> 3, q->y0 >> 3, q->x1 >> 3, q->y1 >> 3};
-    if (t.column1 - t.column0 < TEST_COLUMNS || t.row1 - t.row0 < TEST_ROWS) return tiles_hide(b, q, &t);
-    return blocks_hide(b, q, &t);
+    if (t.column1 - t.column0 < TEST_COLUMNS || t.row1 - t.row0 < TEST_ROWS) return tiles_hide(b, q, &t, open);
+    if (!(b->far[open->row * b->pitch + open->column] > q->depth) && !tile_hides(b, q, open->column, open->row)) return 0;
+    return blocks_hide(b, q, &t, open);
 }

@@ -4,6 +4,7 @@
 #include "hiz_tree.h"
 #include "median.h"
 
+#include <math.h>
 #include <string.h>
 
 typedef struct split_range { uint32_t first, count; } split_range;
@@ -69,6 +70,13 @@ static void order_make(splitter *s, uint32_t count)
 
 // ---- Boxes ----
 
+// Of what is no number nothing is known: such a box is everywhere, and so are the nodes above it.
+static cull_box box_known(cull_box box)
+{
+    const cull_box everywhere = {{-FLT_MAX, -FLT_MAX, -FLT_MAX}, {FLT_MAX, FLT_MAX, FLT_MAX}};
+    return isnan(box.min.x + box.min.y + box.min.z) || isnan(box.max.x + box.max.y + box.max.z) ? everywhere : box;
+}
+
 static void box_put(float *blocks, uint32_t entry, const cull_box *box)
 {
     const float values[6] = {box->min.x, box->min.y, box->min.z, box->max.x, box->max.y, box->max.z};
@@ -96,7 +104,7 @@ static void levels_fill(const cull_zone *zone, hiz_tree *t)
         at += (size_t)blocks * HIZ_BLOCK_FLOATS;
         for (uint32_t i = 0; i < blocks * HIZ_WIDTH; i++) {
             cull_box box = none;
-            if (i < t->counts[level]) box = level ? block_box(t->blocks[level - 1] + (size_t)i * HIZ_BLOCK_FLOATS) : cull_box_at(&zone->boxes, t->items[i]);
+            if (i < t->counts[level]) box = level ? block_box(t->blocks[level - 1] + (size_t)i * HIZ_BLOCK_FLOATS) : box_known(cull_box_at(&zone->boxes, t->items[i]));
             box_put(t->blocks[level], i, &box);
         }
     }

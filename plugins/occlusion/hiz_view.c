@@ -37,10 +37,15 @@ static int is_finite_view(const hiz_view *v)
     return isfinite(sum);
 }
 
-void hiz_view_make(const cull_view *view, hiz_size most, hiz_view *out)
+static int32_t cells_of(uint32_t pixels, int32_t cell)
+{
+    return (int32_t)(pixels / (uint32_t)cell + (pixels % (uint32_t)cell != 0));
+}
+
+void hiz_view_make(const cull_view *view, hiz_size most, hiz_size cell, hiz_view *out)
 {
     const float *m = view->clip_from_zone;
-    const double width = view->width_px, height = view->height_px, reach = view->reach;
+    const double width = (double)view->width_px / cell.width_px, height = (double)view->height_px / cell.height_px, reach = view->reach;
     double rows[3][3], columns[3][3];
     *out = (hiz_view){.near_up = FLT_MAX, .width_px = 1, .height_px = 1, .y_end = 1}; // until it is: all boxes count as near
     for (int k = 0; k < 3; k++) {
@@ -68,11 +73,13 @@ void hiz_view_make(const cull_view *view, hiz_size most, hiz_view *out)
     const double moved = 1.7320508075688772 * CULL_GUARD_DISTANCE * reach; // of a corner, per metre of w
     out->outset_px = (float)(CULL_GUARD_PX + pixels_per_tangent * moved * (1 + reach));
     out->inset_px = HIZ_INSET_PX + pixels_per_tangent * moved * (1 + reach);
+    out->inset_cell[0] = (cell.width_px - 1) / (2.0 * cell.width_px);
+    out->inset_cell[1] = (cell.height_px - 1) / (2.0 * cell.height_px);
     out->depth_up = (float)(1 + 2 * moved);
     out->near_w = (double)view->near_distance;
     out->near_up = (float)((double)view->near_distance * (1 + 2 * moved) * (1 + 1.0 / 1024));
-    out->width_px = (int32_t)view->width_px;
-    out->height_px = (int32_t)view->height_px;
+    out->width_px = cells_of(view->width_px, cell.width_px);
+    out->height_px = cells_of(view->height_px, cell.height_px);
     out->y_end = out->height_px;
     out->is_usable = is_finite_view(out) && view->near_distance > 0 && width > 0 && height > 0;
     if (!out->is_usable) *out = (hiz_view){.near_up = FLT_MAX, .width_px = 1, .height_px = 1, .y_end = 1};

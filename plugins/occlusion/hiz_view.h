@@ -19,15 +19,18 @@ typedef struct hiz_view {
     double eye_exact[3];
     double ray[3][3];                       // [axis]: a * x + b * y + c at pixel coordinates, of the ray that reaches w = 1
     double rounding_px;                     // that all coordinates of a corner move by when they are off by their distance, at w 1
+    double inset_cell[2];                   // x, y: how far from a cell's centre the centres of its pixels lie, in cells
     double inset_px, near_w;                // nearer than near_w nothing leaves a pixel, or it may be cut
     float outset_px, depth_up, near_up;     // depth_up: factor of a tested depth; near_up: of near_w, as float
-    int32_t width_px, height_px;            // of the picture
+    int32_t width_px, height_px;            // of the picture, in cells
     int32_t y_first, y_end;                 // rows that are looked at: all, or a thread's share
     int32_t is_usable;                      // 0: nothing can be said about this view; all counts as seen
 } hiz_view;
 
 typedef struct hiz_size { int32_t width_px, height_px; } hiz_size;
-// most: what the buffer holds; a larger picture is not usable.
-void hiz_view_make(const cull_view *view, hiz_size most, hiz_view *out);
+// A depth may stand for a cell of several pixels: then all that is said in pixels here and in the buffer is in cells. What hides covers a
+// cell where it covers the centres of all its pixels; what is tested has each cell of which it might have one.
+// most: what the buffer holds; a larger picture is not usable. cell: its pixels.
+void hiz_view_make(const cull_view *view, hiz_size most, hiz_size cell, hiz_view *out);
 
 #endif

@@ -29,7 +29,7 @@ typedef struct hiz_kernel {
     // Which of 16 boxes may leave a pixel behind what is drawn.
     uint32_t (*boxes_seen)(const hiz_view *v, hiz_buffer *b, const float *block, uint32_t lanes);
     void (*polygon_cover)(hiz_buffer *b, const hiz_polygon *p);
-    int (*rectangle_hidden)(hiz_buffer *b, const hiz_rectangle *q);
+    int (*rectangle_hidden)(hiz_buffer *b, const hiz_rectangle *q, hiz_place *open); // open: where to begin; where it is not hidden
 } hiz_kernel;
 
 // [main] "auto" takes the widest that this CPU has; NULL: no such name, or this CPU lacks it.

@@ -40,18 +40,20 @@ static inline void corners_of(const float row[3], const hiz_f low[3], const hiz_
     }
 }
 
-static inline void pixels_between(hiz_f low, hiz_f high, hiz_f outset, int32_t begin, int32_t size, uint32_t near, int32_t first[], int32_t last[])
+static inline void pixels_between(hiz_f low, hiz_f high, hiz_f outset, int32_t begin, int32_t final, uint32_t near, int32_t first[], int32_t last[])
 {
     const hiz_f from = f_ceil(f_sub(low, f_add(outset, f_set(0.5f)))), to = f_floor(f_add(high, f_sub(outset, f_set(0.5f))));
-    const hiz_f most = f_set((float)(size - 1)), least = f_set((float)begin);
+    const hiz_f most = f_set((float)final), least = f_set((float)begin);
     // of a NaN f_min and f_max give the second
-    const hiz_f start = f_min(f_max(from, least), f_set((float)size)), end = f_max(f_min(to, most), f_set((float)(begin - 1)));
+    const hiz_f start = f_min(f_max(from, least), f_set((float)(final + 1))), end = f_max(f_min(to, most), f_set((float)(begin - 1)));
     i_store(first, f_to_i(f_pick(near, least, start)));
     i_store(last, f_to_i(f_pick(near, most, end)));
 }
 
+// within: the rectangle of the node that the boxes lie in, none nearer than its depth. It holds what the boxes' own rectangles hold, but
+// rounds otherwise; in both of them a box is found hidden wherever its node is, so that bands find the same set.
 // Returns the lanes that may leave a pixel on an empty picture.
-static inline uint32_t block_project(const hiz_view *v, const float *block, uint32_t lanes, walk_rects *out)
+static inline uint32_t block_project(const hiz_view *v, const float *block, uint32_t lanes, const hiz_rectangle *within, walk_rects *out)
 {
     hiz_f low[3], high[3], w[8], x[8], y[8], size = f_set(0);
     for (int axis = 0; axis < 3; axis++) {
@@ -76,9 +78,10 @@ static inline uint32_t block_project(const hiz_view *v, const float *block, uint
     least_w = f_sub(least_w, f_mul(size, f_set(WALK_ROUNDING)));
     const uint32_t near = ~(f_above(least_w, f_set(v->near_up)) & f_above(f_set(WALK_SIZE_MOST), size));
     const hiz_f outset = f_add(f_set(v->outset_px), f_div(f_mul(size, f_set((float)v->rounding_px * WALK_ROUNDING)), least_w));
-    pixels_between(low_x, high_x, outset, 0, v->width_px, near, out->x0, out->x1);
-    pixels_between(low_y, high_y, outset, v->y_first, v->y_end, near, out->y0, out->y1);
-    f_store(out->depth, f_pick(near, f_set(WALK_NEAREST), f_div(f_set(v->depth_up), least_w)));
+    const hiz_f across = f_set((float)v->inset_cell[0]), up = f_set((float)v->inset_cell[1]);
+    pixels_between(low_x, high_x, f_add(outset, across), within->x0, within->x1, near, out->x0, out->x1);
+    pixels_between(low_y, high_y, f_add(outset, up), within->y0, within->y1, near, out->y0, out->y1);
+    f_store(out->depth, f_min(f_pick(near, f_set(WALK_NEAREST), f_div(f_set(v->depth_up), least_w)), f_set(within->depth)));
     return lanes & ~i_above(i_load(out->x0), i_load(out->x1)) & ~i_above(i_load(out->y0), i_load(out->y1));
 }
 
@@ -86,6 +89,12 @@ static inline hiz_rectangle lane_rect(const walk_rects *r, int lane)
 {
     const hiz_rectangle q = {r->x0[lane], r->y0[lane], r->x1[lane], r->y1[lane], r->depth[lane]};
     return q;
+}
+
+static inline hiz_place first_place(const hiz_rectangle *q)
+{
+    const hiz_place p = {(int16_t)(q->x0 >> 3), (int16_t)(q->y0 >> 3)};
+    return p;
 }
 
 // ---- Sixteen boxes and the volumes ----
@@ -149,7 +158,14 @@ static inline uint32_t small_hidden(const hiz_buffer *b, const walk_rects *r, ui
     return lanes & f_above(f_min(first, second), f_load(r->depth));
 }
 
-static inline void node_open(hiz_walk *w, uint32_t level, uint32_t block, uint32_t planes)
+static inline hiz_rectangle picture_rect(const hiz_view *v)
+{
+    const hiz_rectangle all = {0, v->y_first, v->width_px - 1, v->y_end - 1, WALK_NEAREST};
+    return all;
+}
+
+// planes, within: of the node itself
+static inline void node_open(hiz_walk *w, uint32_t level, uint32_t block, uint32_t planes, const hiz_rectangle *within)
 {
     const float *boxes = w->index->tree.blocks[level] + (size_t)block * HIZ_BLOCK_FLOATS;
     uint32_t cut[HIZ_LANES];
@@ -157,14 +173,15 @@ static inline void node_open(hiz_walk *w, uint32_t level, uint32_t block, uint32
     uint32_t lanes = block_inside(w, boxes, active_lanes(w, level, block), planes, cut);
     w->nodes_visited++;
     if (!lanes) return;
-    lanes = block_project(w->view, boxes, lanes, &rects);
+    lanes = block_project(w->view, boxes, lanes, within, &rects);
     for (lanes &= ~small_hidden(w->buffer, &rects, lanes); lanes; lanes &= lanes - 1) {
         const int lane = __builtin_ctz(lanes);
         const hiz_rectangle q = lane_rect(&rects, lane);
+        hiz_place open = first_place(&q);
         w->test_count++;
-        if (q.depth < WALK_NEAREST && rectangle_hidden(w->buffer, &q)) continue;
+        if (q.depth < WALK_NEAREST && rectangle_hidden(w->buffer, &q, &open)) continue;
         const queue_entry e = {q.depth, level << WALK_LEVEL_SHIFT | (block * HIZ_WIDTH + (uint32_t)lane), cut[lane], w->polygon_count, 0,
-                               (int16_t)q.x0, (int16_t)q.y0, (int16_t)q.x1, (int16_t)q.y1};
+                               (int16_t)q.x0, (int16_t)q.y0, (int16_t)q.x1, (int16_t)q.y1, open};
         queue_push(&w->queue, &e);
     }
 }
@@ -216,16 +233,17 @@ static void walk_run(hiz_walk *w)
 {
     const hiz_tree *tree = &w->index->tree;
     queue_entry e;
+    const hiz_rectangle all = picture_rect(w->view);
     queue_begin(&w->queue);
     if (!tree->item_count) return;
-    node_open(w, tree->level_count - 1, 0, w->volume_count ? all_planes(w->volumes) : 0);
+    node_open(w, tree->level_count - 1, 0, w->volume_count ? all_planes(w->volumes) : 0, &all);
     while (queue_pop(&w->queue, &e)) {
         const uint32_t level = e.code >> WALK_LEVEL_SHIFT, number = e.code & WALK_NUMBER;
         const hiz_rectangle rect = {e.x0, e.y0, e.x1, e.y1, e.depth};
         w->test_count++;
-        if (e.depth < WALK_NEAREST && e.polygon_count != w->polygon_count && rectangle_hidden(w->buffer, &rect)) continue;
+        if (e.depth < WALK_NEAREST && e.polygon_count != w->polygon_count && rectangle_hidden(w->buffer, &rect, &e.open)) continue;
         if (level) {
-            node_open(w, level - 1, number, e.planes);
+            node_open(w, level - 1, number, e.planes, &rect);
             continue;
         }
         w->seen[w->seen_count++] = number;
@@ -235,12 +253,14 @@ static void walk_run(hiz_walk *w)
 
 static uint32_t walk_boxes_seen(const hiz_view *v, hiz_buffer *b, const float *block, uint32_t lanes)
 {
+    const hiz_rectangle all = picture_rect(v);
     walk_rects rects;
-    uint32_t seen = block_project(v, block, lanes, &rects);
+    uint32_t seen = block_project(v, block, lanes, &all, &rects);
     for (uint32_t left = seen; left; left &= left - 1) {
         const int lane = __builtin_ctz(left);
         const hiz_rectangle q = lane_rect(&rects, lane);
-        if (q.depth < WALK_NEAREST && rectangle_hidden(b, &q)) seen &= ~(1u << lane);
+        hiz_place open = first_place(&q);
+        if (q.depth < WALK_NEAREST && rectangle_hidden(b, &q, &open)) seen &= ~(1u << lane);
     }
     return seen;
 }

@@ -3,7 +3,7 @@
 // did. Where tests pay in the zone as a whole it is then tested again; else a frame of it is drawn and tested afterwards, which
 // nobody waits for, and what would have been hidden decides anew. So begin units that come into sight while the zone does not pay.
 // A zone of which less than a fifth is hidden, or whose tests don't bring in a quarter of what they cost, rests in the same way, at
-// most 512 frames: then nothing is waited for, and every eighth frame one item in 16 is tested after it is drawn.
+// most 512 frames: then nothing is waited for, and every eighth frame one item in 16 is tested after it is drawn, of many items fewer.
 // Counts and no clock: the same answers give the same runs on every machine. What things cost, in polygons drawn: a test is a
 // box of 6 faces that writes nothing; a step that is waited for empties the graphics processor's queue. Both are rough: halving
 // or doubling them moves the point where it switches off by as much.
@@ -110,6 +110,15 @@ static inline void ledger_wake(ledger_page *zone, uint32_t serial)
     ledger_begin_anew(zone, serial);
 }
 
+static inline void ledger_rest(ledger_page *zone, uint32_t serial)
+{
+    const uint32_t level = zone->level < LEDGER_LEVEL_LEAST ? LEDGER_LEVEL_LEAST : zone->level;
+    if (!zone->is_off) ledger_begin_anew(zone, serial);
+    zone->is_off = 1;
+    zone->off_until = serial + (1u << level);
+    zone->level = level < LEDGER_REST_MOST ? level + 1 : level;
+}
+
 // Of a zone, asked once a frame: 1 while nothing in it is to be tested before it is drawn. Where half of what is looked at
 // turns out hidden it does not wait for the end of the pause: the scene, or the view, is another.
 static inline int ledger_rests(ledger_page *zone, uint32_t serial)
@@ -125,11 +134,7 @@ static inline int ledger_rests(ledger_page *zone, uint32_t serial)
         return 0;
     }
     if (zone->is_off && !is_due) return 1;
-    const uint32_t level = zone->level < LEDGER_LEVEL_LEAST ? LEDGER_LEVEL_LEAST : zone->level;
-    if (!zone->is_off) ledger_begin_anew(zone, serial);
-    zone->is_off = 1;
-    zone->off_until = serial + (1u << level);
-    zone->level = level < LEDGER_REST_MOST ? level + 1 : level;
+    ledger_rest(zone, serial);
     return 1;
 }
 

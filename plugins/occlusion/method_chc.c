@@ -9,10 +9,9 @@
 #include "method.h"
 #include "rest.h"
 
-enum { QUEUE_MOST = 256, DIRECT_ITEMS = 64, ROUNDS_MOST = 8, FILL_SHARE = 4, FILLS_MOST = 16, IDLES_MOST = 4 };
+enum { QUEUE_MOST = 256, DIRECT_ITEMS = 64, ROUNDS_MOST = 8, FILL_SHARE = 4, FILLS_MOST = 16 };
 // QUEUE_MOST: tests saved up. DIRECT_ITEMS: a node come into sight with no more is tested item by item. ROUNDS_MOST: after which
-// nothing is guessed any more. FILLS_MOST: steps in a row with nothing but tests that nobody waits for; IDLES_MOST: then, with nothing, while the host goes on
-// elsewhere; then it waits
+// nothing is guessed any more. FILLS_MOST: steps in a row with nothing but tests that nobody waits for; then it waits
 
 typedef struct chc_walk {
     occlusion_walk *w;
@@ -29,12 +28,25 @@ static void draw_item(chc_walk *t, uint32_t place)
     if (t->is_covering && t->w->tree->solid[place]) cover_mark(t->cover, &t->w->tree->boxes[place]);
 }
 
-// Was seen before: drawn without a test, and looked at again when its time has come.
+// Was seen before: drawn without a test, and looked at again when its time has come; before it is drawn where it is likely lost.
 static void draw_seen(chc_walk *t, uint32_t place)
 {
-    const chc_past *p = &t->c->past[tree_entry_of_item(t->w->tree, place)];
+    const tree_entry e = tree_entry_of_item(t->w->tree, place);
+    const int is_due = chc_is_due(t->w, e);
+    if (is_due && chc_is_doubtful(t->w, e)) {
+        chc_queue_add(t->w, e, 0);
+        return;
+    }
     draw_item(t, place);
-    if ((int32_t)(t->w->h->serial - p->due) >= 0) chc_due_add(t->w, place);
+    if (is_due) chc_due_add(t->w, e);
+}
+
+// Seen behind what was drawn by then, which is not all: looked at again at the end of the frame.
+static void draw_found(chc_walk *t, tree_entry e)
+{
+    if (e >= walk_mover_entry(t->w, 0)) walk_draw_mover(t->w, e - walk_mover_entry(t->w, 0));
+    else draw_item(t, e - t->w->tree->node_count);
+    if (chc_is_fresh(t->w, e)) chc_due_add(t->w, e);
 }
 
 // ---- Opening nodes ----
@@ -48,17 +60,9 @@ static void queue_opened(chc_walk *t, tree_entry e)
 static void queue_items_below(chc_walk *t, uint32_t node)
 {
     occlusion_walk *w = t->w;
-    walk_cursor c = walk_from(node);
-    tree_way way;
-    do {
-        const tree_node *n = &w->tree->nodes[c.node];
-        const walk_place at = walk_has(w, c.node) ? walk_look(w, &c) : WALK_OUT;
-        w->batch->nodes_visited++;
-        way = at == WALK_OUT ? TREE_PASS : TREE_ENTER;
-        if (at != WALK_OUT && walk_draw_untested(w, c.node)) way = TREE_PASS;
-        for (uint32_t i = 0; way == TREE_ENTER && i < n->item_count; i++)
-            if (walk_wants(w, n->first_item + i, at)) queue_opened(t, tree_entry_of_item(w->tree, n->first_item + i));
-    } while (walk_go(w, &c, way));
+    walk_pend_below(w, node);
+    for (uint32_t i = 0; i < w->h->pending_count; i++) queue_opened(t, w->h->pending[i]);
+    w->h->pending_count = 0;
 }
 
 // It came into sight: its parts are tested, each for itself.
@@ -91,6 +95,13 @@ static void push_children(chc_walk *t, const tree_node *n)
 {
     for (uint32_t c = n->first_child; c < n->first_child + n->child_count; c++)
         if (walk_has(t->w, c) && walk_place_of(t->w, &t->w->tree->nodes[c].box) != WALK_OUT) push(t, c);
+}
+
+static void push_parts(chc_walk *t, const tree_node *n)
+{
+    for (uint32_t i = 0; i < n->item_count; i++)
+        if (walk_wants(t->w, n->first_item + i, WALK_CUT)) push(t, tree_entry_of_item(t->w->tree, n->first_item + i));
+    push_children(t, n);
 }
 
 // Nothing was seen below it, and it was not found seen itself of late.
@@ -136,13 +147,17 @@ static void look_first(chc_walk *t, heap_entry top)
     }
     if (!is_node) {
         draw_item(t, top.entry - w->tree->node_count);
-        chc_due_add(w, top.entry - w->tree->node_count);
+        chc_due_add(w, top.entry);
         return;
     }
-    const tree_node *n = &w->tree->nodes[top.entry];
-    for (uint32_t i = 0; i < n->item_count; i++)
-        if (walk_wants(w, n->first_item + i, WALK_CUT)) push(t, tree_entry_of_item(w->tree, n->first_item + i));
-    push_children(t, n);
+    push_parts(t, &w->tree->nodes[top.entry]);
+}
+
+// With nothing to go by, a large zone that was seen whole: what is in front in it is guessed. What stands in front of a small one,
+// as rooms are, is in other zones: its parts are tested.
+static int begins_here(const chc_walk *t, tree_entry e)
+{
+    return e == 0 && t->c->is_first && t->w->tree->item_count > TREE_UNIT_ITEMS && !t->w->h->drawn_count;
 }
 
 // A test of this frame found it seen. What nearer ones of this step cover is tested again behind them.
@@ -150,10 +165,10 @@ static void take_seen(chc_walk *t, tree_entry e)
 {
     occlusion_walk *w = t->w;
     const cull_box box = walk_box(w, e);
-    if (t->is_covering && cover_look(t->cover, &box) == COVER_FULL) chc_queue_add(w, e, 0);
-    else if (e >= walk_mover_entry(w, 0)) walk_draw_mover(w, e - walk_mover_entry(w, 0));
+    if (begins_here(t, e)) push_parts(t, &w->tree->nodes[0]);
+    else if (t->is_covering && cover_look(t->cover, &box) == COVER_FULL) chc_queue_add(w, e, 0);
     else if (tree_is_node(w->tree, e)) open_node(t, e);
-    else draw_item(t, e - w->tree->node_count);
+    else draw_found(t, e);
 }
 
 static void traverse(chc_walk *t)
@@ -171,12 +186,31 @@ static void traverse(chc_walk *t)
 
 // ---- Steps ----
 
+// With nothing to go by and from outside of the zone, what hides it may stand in others, which nobody has drawn yet: it is tested
+// whole before anything.
+
 static void begin(chc_walk *t)
 {
     occlusion_walk *w = t->w;
     chc_begin(w);
     w->h->phase = 0;
-    if (w->tree->node_count && walk_has(w, 0) && walk_place_of(w, &w->tree->nodes[0].box) != WALK_OUT) push(t, 0);
+    if (!w->tree->node_count || !walk_has(w, 0) || walk_place_of(w, &w->tree->nodes[0].box) == WALK_OUT) return;
+    if (t->c->is_first && !walk_is_near(w, walk_key(w, &w->tree->nodes[0].box))) chc_queue_add(w, 0, 0);
+    else push(t, 0);
+}
+
+// As draw_seen: what was seen of it, by its id, holds for a while.
+static void draw_mover_seen(chc_walk *t, uint32_t m)
+{
+    const tree_entry e = walk_mover_entry(t->w, m);
+    const int is_due = chc_is_due(t->w, e);
+    if (is_due && chc_is_doubtful(t->w, e)) {
+        chc_queue_add(t->w, e, 0);
+        return;
+    }
+    walk_draw_mover(t->w, m);
+    chc_hold_mover(t->w, m);
+    if (is_due) chc_due_add(t->w, e);
 }
 
 // Looked at when all that was seen is drawn; with nothing to go by, when all that stands still is.
@@ -189,6 +223,7 @@ static void look_at_movers(chc_walk *t)
     const int is_off = ledger_look(&w->h->movers, &w->h->movers, w->h->serial, 0) == LEDGER_OFF;
     for (uint32_t m = 0; m < count; m++)
         if (is_off || walk_is_near(w, walk_key(w, &w->visit->movers[m].box))) walk_draw_mover(w, m);
+        else if (chc_holds_mover(w, m)) draw_mover_seen(t, m);
         else chc_queue_add(w, walk_mover_entry(w, m), 0);
 }
 
@@ -226,10 +261,6 @@ static cull_progress go_on(chc_walk *t)
     if (w->h->heap_count || c->queue_count || w->batch->test_count || w->batch->run_count > w->h->first_run) return CULL_MORE;
     if (c->fills < FILLS_MOST && (chc_ask_due(w, due / FILL_SHARE + 1) || chc_ask_early(w))) {
         c->fills++;
-        return CULL_MORE;
-    }
-    if (c->idles++ < IDLES_MOST) {
-        w->h->counters.idles++;
         return CULL_MORE;
     }
     c->waited = 1;

@@ -1,4 +1,4 @@
-// method=hiz among the methods: one step, no tests; the work is hiz_step's, which needs no history.
+// method=hiz among the methods: one step, no tests; the work is hiz_step's, which needs no history but whether to rest.
 // SPDX-License-Identifier: MIT
 #include "method.h"
 
@@ -20,4 +20,4 @@ static cull_progress step(occlusion_walk *w)
     return CULL_DONE;
 }
 
-const occlusion_method method_hiz = {"hiz", CULL_SAMPLED | CULL_STATELESS, steps_most, tests_most, step};
+const occlusion_method method_hiz = {"hiz", CULL_SAMPLED, steps_most, tests_most, step};

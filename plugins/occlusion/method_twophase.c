@@ -8,6 +8,9 @@
 #include "rest.h"
 
 enum { STEPS = 8, DIRECT_ITEMS = 64 }; // DIRECT_ITEMS: a node seen with no more is tested item by item
+enum { TRIAL_TESTS = 128, TRIAL_PENDING = 512 }; // of a zone that has not been worth its tests: a sample, that decides about more than so many
+
+enum { MOVERS_OPEN, MOVERS_ASKED }; // a phase
 
 typedef struct twophase {
     occlusion_walk *w;
@@ -16,24 +19,6 @@ typedef struct twophase {
 } twophase;
 
 // ---- Opening nodes ----
-
-// Items of the subtree, each to be tested on its own.
-static void pend_items_below(occlusion_walk *w, uint32_t node)
-{
-    walk_cursor c = walk_from(node);
-    tree_way way;
-    do {
-        const tree_node *n = &w->tree->nodes[c.node];
-        const walk_place at = walk_has(w, c.node) ? walk_look(w, &c) : WALK_OUT;
-        w->batch->nodes_visited++;
-        way = at == WALK_OUT ? TREE_PASS : TREE_ENTER;
-        if (at != WALK_OUT && walk_draw_untested(w, c.node)) way = TREE_PASS;
-        for (uint32_t i = 0; way == TREE_ENTER && i < n->item_count; i++) {
-            const uint32_t place = n->first_item + i;
-            if (walk_wants(w, place, at)) walk_pend(w, tree_entry_of_item(w->tree, place));
-        }
-    } while (walk_go(w, &c, way));
-}
 
 // A node that was seen: its parts are tested in this step.
 static void open_node(twophase *t, uint32_t node)
@@ -46,7 +31,7 @@ static void open_node(twophase *t, uint32_t node)
         return;
     }
     if (t->steps_left == 1 || n->below_count <= DIRECT_ITEMS) {
-        pend_items_below(w, node);
+        walk_pend_below(w, node);
         return;
     }
     for (uint32_t i = 0; i < n->item_count; i++)
@@ -125,12 +110,14 @@ static int is_left_for_tests(const twophase *t, const cull_box *box)
     return state == COVER_FULL || state == COVER_SMALL;
 }
 
-// With nothing to go by: large items that no nearer box stands before are drawn untested, all others wait for the first round.
+// With nothing to go by, below the root: large items that no nearer box stands before are drawn untested, all others wait for the next
+// round.
 static void draw_foremost(twophase *t)
 {
     occlusion_walk *w = t->w;
+    if (walk_draw_untested(w, 0)) return;
     cover_begin(t->cover, w->visit->view);
-    if (walk_has(w, 0) && walk_place_of(w, &w->tree->nodes[0].box) != WALK_OUT) push(w, 0);
+    push_parts(w, &w->tree->nodes[0]);
     while (w->h->heap_count) {
         const heap_entry top = heap_pop(w->h->heap, &w->h->heap_count);
         const cull_box box = tree_entry_box(w->tree, top.entry);
@@ -146,7 +133,7 @@ static void draw_foremost(twophase *t)
 // From outside of a zone what hides it may stand in others, which nobody has drawn yet: it is tested whole before anything.
 static void begin_anew(twophase *t)
 {
-    if (!walk_has(t->w, 0)) return;
+    if (!walk_has(t->w, 0) || walk_place_of(t->w, &t->w->tree->nodes[0].box) == WALK_OUT) return;
     if (walk_is_near(t->w, walk_key(t->w, &t->w->tree->nodes[0].box))) draw_foremost(t);
     else walk_pend(t->w, 0);
 }
@@ -173,7 +160,7 @@ static void sort_answers(twophase *t)
             if (h->pixels[i]) walk_draw_mover(w, e - walk_mover_entry(w, 0));
         } else if (h->pixels[i]) push(w, e);
     }
-    w->batch->limits_hit += count > tested;
+    w->batch->limits_hit += count > tested && tested == h->test_most;
 }
 
 static void draw_layer(twophase *t)
@@ -191,9 +178,65 @@ static void draw_layer(twophase *t)
     }
 }
 
+// ---- Whether a zone is worth its first tests ----
+
+// Spreads those that are asked over all that is pending, which came near to far.
+static void ask_sample(occlusion_walk *w)
+{
+    occlusion_history *h = w->h;
+    const uint32_t stride = h->pending_count / TRIAL_TESTS;
+    for (uint32_t i = 0; i < TRIAL_TESTS; i++) {
+        const tree_entry e = h->pending[i];
+        h->pending[i] = h->pending[i * stride];
+        h->pending[i * stride] = e;
+    }
+    h->tried = h->serial;
+    h->sampled_step = w->visit->step;
+    h->gained_before = h->zone.gained;
+    walk_ask(w, TRIAL_TESTS);
+}
+
+// The sample took away what it cost, and a part of the entries that counts. A round is not counted: it is one.
+static int sample_pays(const occlusion_walk *w, uint32_t gained_before)
+{
+    uint32_t hidden = 0;
+    for (uint32_t i = 0; i < w->h->tested_count; i++) hidden += w->h->pixels[i] == 0;
+    return w->h->zone.gained - gained_before >= w->h->tested_count * LEDGER_TEST && hidden >= w->h->tested_count / LEDGER_SHARE;
+}
+
+// All that is pending is drawn, but for what the sample found hidden. The next frame begins with a sample, too: the view may be
+// another. Of what is drawn the sample alone counts, as of what is hidden.
+static void give_up(twophase *t)
+{
+    occlusion_walk *w = t->w;
+    occlusion_history *h = w->h;
+    for (uint32_t i = 0; i < h->pending_count; i++) {
+        const tree_entry e = h->pending[i];
+        if (i < h->tested_count && h->pixels[i] == 0) continue;
+        if (i < h->tested_count) ledger_show(&h->zone, tree_entry_polygons(w->tree, e));
+        if (tree_is_node(w->tree, e)) walk_draw_below(w, e);
+        else walk_draw(w, e - w->tree->node_count);
+    }
+    h->pending_count = 0;
+    h->gave_up = h->serial;
+}
+
+// Once a frame, before most of its tests.
+static int is_worth_a_sample(const twophase *t)
+{
+    const occlusion_history *h = t->w->h;
+    const int is_proven = h->zone.tests >= LEDGER_TRIAL_TESTS && ledger_pays(&h->zone);
+    return !is_proven && h->phase == MOVERS_OPEN && h->tried != h->serial && h->pending_count > TRIAL_PENDING && t->steps_left > 2;
+}
+
 static void go_on(twophase *t)
 {
     occlusion_history *h = t->w->h;
+    const int is_sample = h->tried == h->serial && h->sampled_step + 1 == t->w->visit->step;
+    if (is_sample && !sample_pays(t->w, h->gained_before)) {
+        give_up(t);
+        return;
+    }
     if (!is_begun_by_test(t->w)) {
         draw_layer(t);
         return;
@@ -203,8 +246,6 @@ static void go_on(twophase *t)
 }
 
 // ---- Movers ----
-
-enum { MOVERS_OPEN, MOVERS_ASKED };
 
 // Tested once, when nothing else is open: by then all that hides them is drawn.
 static void look_at_movers(twophase *t)
@@ -232,6 +273,16 @@ static void ask_for_next_frame(occlusion_walk *w)
     }
 }
 
+static void end_frame(occlusion_walk *w)
+{
+    if (w->h->gave_up == w->h->serial) history_forget(w->h);
+    else {
+        ask_for_next_frame(w);
+        rest_count_drawn(w);
+    }
+    history_turn(w->h);
+}
+
 static uint32_t steps_most(uint32_t entries)
 {
     (void)entries;
@@ -249,12 +300,11 @@ static cull_progress step(occlusion_walk *w)
     else if (w->tree->node_count) draw_seen(w);
     look_at_movers(&t);
     if (h->pending_count && t.steps_left) {
-        walk_ask(w);
+        if (is_worth_a_sample(&t)) ask_sample(w);
+        else walk_ask(w, UINT32_MAX);
         return CULL_WAIT;
     }
-    ask_for_next_frame(w);
-    rest_count_drawn(w);
-    history_turn(h);
+    end_frame(w);
     return CULL_DONE;
 }
 

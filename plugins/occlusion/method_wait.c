@@ -68,7 +68,7 @@ static cull_progress step(occlusion_walk *w)
             continue;
         }
         walk_pend(w, top.entry);
-        walk_ask(w);
+        walk_ask(w, 1);
         return CULL_WAIT;
     }
     history_turn(h);

@@ -9,13 +9,13 @@
 #include "cover.h"
 #include "explain.h"
 #include "figures.h"
-#include "hiz.h"
+#include "hiz_rest.h"
 #include "method.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { OPTION_METHOD, OPTION_WALK, OPTION_BATCH, OPTION_PRUNE, OPTION_THREADS, OPTION_ISA, OPTION_COUNT }; // places in occlusion_options
+enum { OPTION_METHOD, OPTION_WALK, OPTION_BATCH, OPTION_PRUNE, OPTION_THREADS, OPTION_ISA, OPTION_PIXELS, OPTION_COUNT }; // places in occlusion_options
 
 typedef enum walk_choice { WALK_AUTO, WALK_LENT, WALK_CANDIDATES } walk_choice;
 
@@ -189,14 +189,21 @@ static occlusion_walk walk_of(cull_query *q, const cull_visit *visit, cull_batch
     return w;
 }
 
+static cull_progress hiz_frame_step(cull_query *q, occlusion_walk *w)
+{
+    const hiz *h = &q->culler->hiz;
+    hiz_counters *counters = &q->history.counters.hiz;
+    if (hiz_rest_frame(w, &counters->rest)) return CULL_DONE;
+    const cull_progress progress = hiz_step(h, q->history.says_places ? q->culler->tree.places : NULL, w->visit, w->batch, counters);
+    hiz_rest_judge(w, h, &counters->rest);
+    return progress;
+}
+
 static cull_progress occlusion_step(cull_query *q, const cull_visit *visit, cull_batch *batch)
 {
     const cull_culler *c = q->culler;
-    if (c->has_hiz) {
-        q->history.counters.frames++;
-        return hiz_step(&c->hiz, q->history.says_places ? c->tree.places : NULL, visit, batch, &q->history.counters.hiz);
-    }
     occlusion_walk w = walk_of(q, visit, batch);
+    if (c->has_hiz) return hiz_frame_step(q, &w);
     if (visit->step == 0) walk_begin(&w);
     q->history.first_run = batch->run_count;
     walk_hear(&w);
@@ -222,8 +229,9 @@ static cull_progress occlusion_filter(cull_query *q, const cull_visit *visit, cu
 static size_t occlusion_explain(cull_query *q, const cull_visit *visit, uint32_t item, char *text, size_t size)
 {
     const occlusion_walk w = walk_of(q, visit, NULL);
-    const hiz *h = q->culler->has_hiz ? &q->culler->hiz : NULL;
-    if (h && item < w.tree->item_count) return explain_seen(hiz_sees(h, visit, q->history.says_places ? w.tree->ids[item] : item), text, size);
+    const int rests = q->history.serial && q->history.rested == q->history.serial;
+    if (q->culler->has_hiz && !rests && item < w.tree->item_count)
+        return explain_sight(&w, item, hiz_look(&q->culler->hiz, visit, q->history.says_places ? w.tree->ids[item] : item), text, size);
     return explain_item(&w, item, text, size);
 }
 
@@ -245,6 +253,7 @@ static const cull_option occlusion_options[OPTION_COUNT] = {
     [OPTION_PRUNE] = {"prune", "on", NULL, "of hiz: on: tiles that a polygon does not touch are passed over; off: all tiles of its rectangle are looked at"},
     [OPTION_THREADS] = {"threads", "1", NULL, "of hiz: 1, 2, 4 or 8 bands of the picture, each a task of its own; the same result"},
     [OPTION_ISA] = {"isa", "auto", NULL, "of hiz: instruction set: auto, avx512, avx2, plain; all find the same set"},
+    [OPTION_PIXELS] = {"pixels", "auto", NULL, "of hiz: 1, 2 or 4 pixels share a depth: coarser is faster and leaves more; auto: 2 in a large picture of few boxes, else 1"},
 };
 
 static const cull_descriptor occlusion_descriptor = {

@@ -5,7 +5,7 @@
 
 #include "ledger.h"
 
-enum { SAMPLE_FRAMES = 8, SAMPLE_EVERY = 16 }; // a resting zone: frames from tests to tests, places from test to test
+enum { SAMPLE_FRAMES = 8, SAMPLE_EVERY = 16, SAMPLE_MOST = 32 }; // a resting zone: frames from tests to tests, places from test to test; tests, roughly
 enum { RUN_MOST = 4096 }; // items drawn as they lie, not near to far
 
 // ---- Whether it rests ----
@@ -40,9 +40,18 @@ static int is_asking(const occlusion_walk *w)
 // Other places each time.
 static void ask_some(occlusion_walk *w, uint32_t first, uint32_t count)
 {
-    const uint32_t turn = w->h->serial / SAMPLE_FRAMES * 5u % SAMPLE_EVERY, ahead = (turn + SAMPLE_EVERY - first % SAMPLE_EVERY) % SAMPLE_EVERY;
-    for (uint32_t k = ahead; k < count && is_asking(w); k += SAMPLE_EVERY)
+    const uint32_t every = w->h->sample_every, turn = w->h->serial / SAMPLE_FRAMES * 5u % every, ahead = (turn + every - first % every) % every;
+    w->h->sampled_items += count;
+    for (uint32_t k = ahead; k < count && is_asking(w); k += every)
         if (!walk_ask_final(w, first + k)) return;
+}
+
+// By what the frame before looked at: this one is not counted yet.
+static void begin_sample(occlusion_history *h)
+{
+    h->sample_every = SAMPLE_EVERY;
+    while (h->sampled_items / h->sample_every > SAMPLE_MOST) h->sample_every *= 2;
+    h->sampled_items = 0;
 }
 
 static void push(occlusion_walk *w, uint32_t node)
@@ -84,6 +93,7 @@ static void draw_candidates(occlusion_walk *w)
     for (uint32_t i = 0; i < w->visit->candidate_count; i++) {
         const cull_run run = w->visit->candidates[i];
         walk_put_run(w, run.first, run.count);
+        if (!is_asking(w)) w->h->sampled_items += run.count;
         for (uint32_t k = 0; k < run.count && is_asking(w); k++) ask_some(w, w->places ? w->places[run.first + k] : run.first + k, 1);
     }
 }
@@ -108,6 +118,7 @@ int rest_frame(occlusion_walk *w)
     if (polygons_at_most(w, least) >= least && !ledger_rests(&h->zone, h->serial)) return 0;
     h->counters.rests++;
     h->rested = h->serial;
+    begin_sample(h);
     if (w->takes_candidates && !w->visit->picture_count) draw_candidates(w);
     else draw_tree(w);
     if (w->tree->node_count && is_asking(w) && !walk_is_near(w, walk_key(w, &w->tree->nodes[0].box))) walk_ask_final(w, w->tree->item_count);

@@ -260,6 +260,23 @@ void walk_pend(occlusion_walk *w, tree_entry e)
     w->h->pending[w->h->pending_count++] = e;
 }
 
+void walk_pend_below(occlusion_walk *w, uint32_t node)
+{
+    walk_cursor c = walk_from(node);
+    tree_way way;
+    do {
+        const tree_node *n = &w->tree->nodes[c.node];
+        const walk_place at = walk_has(w, c.node) ? walk_look(w, &c) : WALK_OUT;
+        w->batch->nodes_visited++;
+        way = at == WALK_OUT ? TREE_PASS : TREE_ENTER;
+        if (at != WALK_OUT && walk_draw_untested(w, c.node)) way = TREE_PASS;
+        for (uint32_t i = 0; way == TREE_ENTER && i < n->item_count; i++) {
+            const uint32_t place = n->first_item + i;
+            if (walk_wants(w, place, at)) walk_pend(w, tree_entry_of_item(w->tree, place));
+        }
+    } while (walk_go(w, &c, way));
+}
+
 void walk_put_test(occlusion_walk *w, const cull_box *box, uint32_t tag)
 {
     w->batch->tests[w->batch->test_count++] = (cull_test){*box, tag, 0};
@@ -277,10 +294,10 @@ static void enter(occlusion_walk *w, tree_entry e, uint32_t cost, uint32_t polyg
     ledger_enter_zone(&w->h->zone, cost, polygons);
 }
 
-uint32_t walk_ask(occlusion_walk *w)
+uint32_t walk_ask(occlusion_walk *w, uint32_t most)
 {
     occlusion_history *h = w->h;
-    const uint32_t room = h->test_most - w->batch->test_count;
+    const uint32_t left = h->test_most - w->batch->test_count, room = left < most ? left : most;
     h->tested_count = h->pending_count < room ? h->pending_count : room;
     for (uint32_t i = 0; i < h->tested_count; i++) {
         const cull_box box = walk_box(w, h->pending[i]);

@@ -84,8 +84,9 @@ int walk_wants(const occlusion_walk *w, uint32_t place, walk_place node_at);
 
 // Puts the entry among those that this step tests.
 void walk_pend(occlusion_walk *w, tree_entry e);
-// Asks for the tests of the pending entries, as many as there is room for. Returns how many.
-uint32_t walk_ask(occlusion_walk *w);
+void walk_pend_below(occlusion_walk *w, uint32_t node); // items of the subtree, each on its own; units that are off are drawn
+// Asks for the tests of the first pending entries, as many as there is room for, `most` of them. Returns how many.
+uint32_t walk_ask(occlusion_walk *w, uint32_t most);
 // Reads answers to them into h->pixels; entries without an answer have 1.
 void walk_hear(occlusion_walk *w);
 // A test of an item, or with item_count for its place of all of them, after all draws; the answer comes in a later frame. 0: no room.

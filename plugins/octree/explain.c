@@ -7,26 +7,6 @@
 
 #include <stdio.h>
 
-typedef struct finding {
-    float height; // of the box's innermost corner over the plane, metres; the largest over the volumes of the least over planes
-    uint32_t volume, plane;
-} finding;
-
-static finding judge(const cull_visit *visit, cull_box box)
-{
-    finding best = {-INFINITY, 0, 0};
-    for (uint32_t v = 0; v < visit->volume_count; v++) {
-        finding worst = {INFINITY, v, 0};
-        for (uint32_t k = 0; k < visit->volumes[v].plane_count; k++) {
-            const cull_plane p = visit->volumes[v].planes[k];
-            const float height = cull_plane_height(p, cull_box_corner(box, p.normal));
-            if (height < worst.height) worst = (finding){height, v, k};
-        }
-        if (worst.height > best.height) best = worst;
-    }
-    return best;
-}
-
 static int shows_only_its_back(const explain_source *from, const cull_view *view, uint32_t place)
 {
     if (from->backs == EXPLAIN_BACKS_KEPT || !from->zone->walls) return 0;
@@ -60,7 +40,7 @@ size_t explain_item(const explain_source *from, const cull_visit *visit, uint32_
     }
     uint32_t depth;
     const uint32_t node = node_of(from->cells, place, &depth);
-    const finding f = judge(visit, cull_box_at(&from->zone->boxes, from->cells->order[place]));
+    const cull_standing f = cull_standing_of(visit->volumes, visit->volume_count, cull_box_at(&from->zone->boxes, from->cells->order[place]));
     if (!visit->volume_count)
         length = snprintf(text, size, "dropped: nothing of the zone is seen");
     else if (!(f.height >= 0))

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-enum { ALIGN = 64, STEPS_MOST = 255 };
+enum { ALIGN = 64 };
 
 typedef struct level { // entries of the level above
     cull_box *boxes;
@@ -114,63 +114,6 @@ static void order_fill(const builder *b, uint32_t l, uint32_t n, index_order *ou
     }
 }
 
-// ---- Bottoms: boxes in steps ----
-
-static float coordinate(const index_bottom *b, int axis, uint32_t steps)
-{
-    const float along = b->step[axis] * (float)steps; // rounded here and below as in the walk
-    return b->origin[axis] + along;
-}
-
-// The least step, or nearly, of which 255 reach from low to high.
-static void axis_fill(index_bottom *b, int axis, float low, float high)
-{
-    b->origin[axis] = low;
-    b->step[axis] = 0;
-    if (!(low < high)) return; // all at one place, or nothing there
-    b->step[axis] = cull_float_up(((double)high - (double)low) / STEPS_MOST);
-    for (double more = 1.0 / 1048576; coordinate(b, axis, STEPS_MOST) < high; more *= 2) // few: where low is far off, its rounding is wide
-        b->step[axis] = cull_float_up((double)b->step[axis] * (1 + more));
-}
-
-static uint8_t steps_below(const index_bottom *b, int axis, float value)
-{
-    uint32_t least = 0, most = STEPS_MOST; // the last one that isn't above: least is not
-    while (least < most) {
-        const uint32_t middle = (least + most + 1) / 2;
-        if (coordinate(b, axis, middle) <= value) least = middle;
-        else most = middle - 1;
-    }
-    return (uint8_t)least;
-}
-
-static uint8_t steps_above(const index_bottom *b, int axis, float value)
-{
-    uint32_t least = 0, most = STEPS_MOST; // the first one that isn't below: most is not
-    while (least < most) {
-        const uint32_t middle = (least + most) / 2;
-        if (coordinate(b, axis, middle) >= value) most = middle;
-        else least = middle + 1;
-    }
-    return (uint8_t)most;
-}
-
-static void bottom_fill(const cull_box *boxes, uint32_t count, index_bottom *out)
-{
-    cull_box all = cull_box_none();
-    memset(out, 0, sizeof *out);
-    if (!count) return;
-    for (uint32_t i = 0; i < count; i++) all = cull_box_union(all, boxes[i]);
-    for (int axis = 0; axis < 3; axis++) {
-        uint8_t *const low = out->steps + axis * CULL_BLOCK_WIDTH, *const high = low + 3 * CULL_BLOCK_WIDTH;
-        axis_fill(out, axis, (&all.min.x)[axis], (&all.max.x)[axis]);
-        for (uint32_t i = 0; i < count; i++) {
-            low[i] = steps_below(out, axis, (&boxes[i].min.x)[axis]);
-            high[i] = steps_above(out, axis, (&boxes[i].max.x)[axis]);
-        }
-    }
-}
-
 // ---- Nodes by items ----
 
 // The first item below an entry of level l.
@@ -207,7 +150,7 @@ static size_t lines(size_t bytes)
 
 typedef struct parts { // of the one block of memory
     index_node *nodes;
-    index_bottom *bottoms;
+    index_node *bottoms;
     float *leaves, *faces;
     index_order *orders;
     uint32_t *leaf_firsts;
@@ -217,13 +160,13 @@ static int parts_alloc(const builder *b, index_faces faces, octree_index *out, p
 {
     const size_t leaves = b->levels[1].count, nodes = out->node_count, bottoms = b->levels[2].count;
     const int has_faces = faces == INDEX_FACES && b->zone->walls && b->zone->item_count;
-    const size_t bottoms_at = nodes * sizeof(index_node), leaves_at = bottoms_at + bottoms * sizeof(index_bottom);
+    const size_t bottoms_at = nodes * sizeof(index_node), leaves_at = bottoms_at + bottoms * sizeof(index_node);
     const size_t faces_at = leaves_at + leaves * CULL_BLOCK_FLOATS * sizeof(float);
     const size_t orders_at = faces_at + (has_faces ? leaves * CULL_BLOCK_FACE_FLOATS * sizeof(float) : 0);
     const size_t firsts_at = orders_at + lines(nodes * sizeof(index_order)), bytes = firsts_at + lines((leaves + 1) * sizeof(uint32_t));
     char *memory = b->host->alloc(b->host, bytes, ALIGN);
     if (!memory) return 0;
-    *p = (parts){(index_node *)(void *)memory, (index_bottom *)(void *)(memory + bottoms_at), (float *)(void *)(memory + leaves_at),
+    *p = (parts){(index_node *)(void *)memory, (index_node *)(void *)(memory + bottoms_at), (float *)(void *)(memory + leaves_at),
                  has_faces ? (float *)(void *)(memory + faces_at) : NULL, (index_order *)(void *)(memory + orders_at),
                  (uint32_t *)(void *)(memory + firsts_at)};
     *out = (octree_index){.item_count = b->zone->item_count, .leaf_count = (uint32_t)leaves, .bottom_count = (uint32_t)bottoms,
@@ -236,7 +179,7 @@ static int index_fill(const builder *b, index_faces faces, octree_index *out)
 {
     parts p;
     for (uint32_t l = 3; l <= b->level_count; l++) out->node_count += b->levels[l].count;
-    if (b->levels[1].count > INDEX_LEAVES_MOST || !parts_alloc(b, faces, out, &p)) return 0;
+    if (!parts_alloc(b, faces, out, &p)) return 0;
     const uint32_t *const starts = b->levels[1].starts;
     memcpy(p.leaf_firsts, starts, ((size_t)out->leaf_count + 1) * sizeof *starts);
     for (uint32_t i = 0; i < out->leaf_count; i++) {
@@ -244,10 +187,8 @@ static int index_fill(const builder *b, index_faces faces, octree_index *out)
         if (p.faces) cull_block_fill_faces(b->zone, b->order + starts[i], starts[i + 1] - starts[i], p.faces + (size_t)i * CULL_BLOCK_FACE_FLOATS);
     }
     for (uint32_t i = 0; i < out->bottom_count; i++) {
-        const cull_run children = children_of(b, 2, i);
-        bottom_fill(b->levels[1].boxes + children.first, children.count, &p.bottoms[i]);
-        firsts_fill(b, 2, children, p.bottoms[i].firsts);
-        p.bottoms[i].leaves = children.first << 4 | (children.count - 1);
+        node_fill(b, 2, i, &p.bottoms[i]);
+        p.bottoms[i].first_child = b->levels[2].starts[i];
     }
     uint32_t n = 0, below = 0; // below: the first node of the level below
     for (uint32_t l = 3; l <= b->level_count; l++) {

@@ -12,33 +12,12 @@ enum {
     INDEX_LEAST = 8,        // in all but a level's only block: a tree at least 8 wide
     INDEX_LEVELS_MOST = 12, // 8^11 > 2^32 items, and one: a root stands over even a single leaf
     INDEX_OCTANTS = 8,
-    INDEX_LEAVES_MOST = 1 << 28, // as a bottom's `leaves` has room for
 };
 
-// A node over leaves. Its children's boxes are told in steps of its own box's 255th, rounded outwards: a node needs half the memory, and an
-// item's own box decides in the end (Ylitie, Karras and Laine, Compressed Wide BVHs, 2017).
-typedef struct index_bottom {
-    uint32_t firsts[CULL_BLOCK_WIDTH + 1]; // the first item of each child; from child_count on: behind the node's last item
-    uint32_t leaves;                        // first << 4 | the number of children less one
-    float origin[3], step[3];               // metres: origin + step * steps, in float as written, is the coordinate
-    uint8_t steps[6 * CULL_BLOCK_WIDTH];    // rows as of a block
-} index_bottom; // three cache lines
-
-static inline uint32_t bottom_first_leaf(const index_bottom *b)
-{
-    return b->leaves >> 4;
-}
-
-static inline uint32_t bottom_child_count(const index_bottom *b)
-{
-    return (b->leaves & 15) + 1;
-}
-
-// A node over nodes.
 typedef struct index_node {
     float boxes[CULL_BLOCK_FLOATS];
-    uint32_t firsts[CULL_BLOCK_WIDTH + 1]; // as above
-    uint32_t first_child;             // in nodes, or, of level 2, in bottoms
+    uint32_t firsts[CULL_BLOCK_WIDTH + 1]; // the first item of each child; from child_count on: behind the node's last item
+    uint32_t first_child; // in nodes; of level 2, in bottoms; of level 1, in leaves
     uint32_t child_count;
     uint32_t reserved[13]; // eight cache lines
 } index_node;
@@ -55,7 +34,7 @@ typedef struct octree_index {
     uint32_t level_count; // of nodes, at least one; the root is the last node, or the only bottom
     const float *leaves;  // blocks of CULL_BLOCK_FLOATS
     const uint32_t *leaf_firsts; // leaf_count + 1
-    const index_bottom *bottoms; // level 1
+    const index_node *bottoms;   // level 1
     const index_node *nodes;     // level 2 first
     const index_order *orders;   // of the nodes
     const float *faces;          // blocks of CULL_BLOCK_FACE_FLOATS, one a leaf; NULL: back faces are kept

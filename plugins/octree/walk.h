@@ -8,7 +8,8 @@
 enum {
     WALK_SPARE_RUNS = 8, // runs behind the last one that a query may scribble on: a vector is stored whole
     WALK_VOLUMES = 16,   // that one walk takes at once
-    WALK_NEAR_BYTES = 1 << 20, // an index of at most so many stays in a core's second cache: asking for memory ahead only costs
+    ALL_ITEMS = 0xffff,  // bits of a leaf's
+    WALK_NEAR_BYTES = 1 << 20, // an index of at most so many stays in a core's second cache: asking for memory ahead for several volumes only costs
 };
 
 typedef enum walk_order { WALK_NEAR_FIRST, WALK_ASCENDING } walk_order; // ascending: as items stand, runs never touch

@@ -3,8 +3,48 @@
 // Invariant: an item is met once, with what every volume and its face say of it together. A node is entered with the volumes that cut it,
 // each with the planes that do; one volume that has all of a node inside ends the asking below it.
 
+// ---- What is found: runs as in walk_body.h, item by item ----
+
+typedef struct found { // in registers while a node is walked: what is written could otherwise be any of these
+    uint32_t *out;
+    uint32_t open; // 1: the item before `at` is visible, its run not yet closed
+    uint32_t at;
+} found;
+
+// Items from `first` on come next.
+static inline found found_to(found f, uint32_t first)
+{
+    const uint32_t goes_on = f.at == first;
+    *f.out = f.at;
+    f.out += f.open & (goes_on ^ 1);
+    f.open &= goes_on;
+    return f;
+}
+
+static inline found put_whole(found f, uint32_t first, uint32_t end)
+{
+    f = found_to(f, first);
+    *f.out = first;
+    f.out += f.open ^ 1;
+    f.open = 1;
+    f.at = end;
+    return f;
+}
+
+// Items base .. base + count-1; further bits of visible are 0.
+static inline found put_leaf(found f, uint32_t visible, uint32_t base, uint32_t count)
+{
+    const uint32_t before = visible << 1 | f.open;
+    f.out = put_places((visible ^ before) & ((1u << count) - 1), base, f.out);
+    f.open = before >> count & 1;
+    return f;
+}
+
+// ---- Several volumes ----
+
 typedef struct many_walk {
     walk w;
+    found found;
     float reach; // of the eye
     int is_far;  // the index is larger than the near caches
     cull_block_plane planes[WALK_VOLUMES][CULL_MAX_PLANES];
@@ -23,8 +63,8 @@ static inline void many_leaf(many_walk *m, uint32_t leaf, uint32_t visible)
     const uint32_t base = index->leaf_firsts[leaf], end = index->leaf_firsts[leaf + 1];
     visible &= (1u << (end - base)) - 1;
     if (index->faces && visible) visible &= cull_block_facing(index->faces + (size_t)leaf * CULL_BLOCK_FACE_FLOATS, m->w.eye, m->reach);
-    m->w.found = put_leaf(go_to(m->w.found, base), visible, base, end - base);
-    m->w.found.at = end;
+    m->found = put_leaf(found_to(m->found, base), visible, base, end - base);
+    m->found.at = end;
 }
 
 // Leaves from `leaf` on up to the item `end`, all inside a volume.
@@ -33,10 +73,10 @@ static inline void many_whole(many_walk *m, uint32_t leaf, cull_run items)
     const octree_index *index = m->w.index;
     const uint32_t end = items.first + items.count;
     if (!index->faces) {
-        m->w.found = put_whole(m->w.found, items.first, end);
+        m->found = put_whole(m->found, items.first, end);
         return;
     }
-    for (; leaf < index->leaf_count && index->leaf_firsts[leaf] < end; leaf++) many_leaf(m, leaf, 0xffff);
+    for (; leaf < index->leaf_count && index->leaf_firsts[leaf] < end; leaf++) many_leaf(m, leaf, ALL_ITEMS);
 }
 
 static inline void many_cut_leaf(many_walk *m, uint32_t leaf, const part_list *list)
@@ -67,32 +107,32 @@ static inline void many_below(const many_split *s, const part_list *list, uint32
         if (s->splits[i].cut >> c & 1) below->parts[below->count++] = (volume_part){list->parts[i].volume, s->splits[i].planes[c]};
 }
 
-static void many_bottom(many_walk *m, const index_bottom *node, const part_list *list)
+static void many_bottom(many_walk *m, const index_node *node, const part_list *list)
 {
     many_split s = {.touching = 0};
     for (uint32_t i = 0; i < list->count; i++) {
         m->w.planes = m->planes[list->parts[i].volume];
-        walk_split_bottom(&m->w, node, list->parts[i].planes, &s.splits[i]);
+        walk_split(&m->w, node, list->parts[i].planes, &s.splits[i]);
         many_split_add(&s, i);
     }
     for (uint32_t rest = m->is_far ? s.touching & ~s.whole : 0; rest; rest &= rest - 1)
-        prefetch_bytes(leaf_at(m->w.index, bottom_first_leaf(node) + cull_lowest_bit(rest)), CULL_BLOCK_FLOATS * sizeof(float));
+        prefetch_bytes(leaf_at(m->w.index, node->first_child + cull_lowest_bit(rest)), CULL_BLOCK_FLOATS * sizeof(float));
     for (uint32_t rest = s.touching; rest; rest &= rest - 1) {
         const uint32_t c = cull_lowest_bit(rest);
         part_list below;
         if (s.whole >> c & 1) {
-            many_whole(m, bottom_first_leaf(node) + c, (cull_run){node->firsts[c], node->firsts[c + 1] - node->firsts[c]});
+            many_whole(m, node->first_child + c, (cull_run){node->firsts[c], node->firsts[c + 1] - node->firsts[c]});
             continue;
         }
         many_below(&s, list, c, &below);
-        many_cut_leaf(m, bottom_first_leaf(node) + c, &below);
+        many_cut_leaf(m, node->first_child + c, &below);
     }
 }
 
 static uint32_t first_leaf(const octree_index *index, uint32_t level, uint32_t entry) // of an entry of the level
 {
     for (; level > 1; level--) entry = index->nodes[entry].first_child;
-    return bottom_first_leaf(&index->bottoms[entry]);
+    return index->bottoms[entry].first_child;
 }
 
 // At most INDEX_LEVELS_MOST deep.
@@ -102,13 +142,13 @@ static void many_node(many_walk *m, const index_node *node, uint32_t level, cons
     many_split s = {.touching = 0};
     for (uint32_t i = 0; i < list->count; i++) {
         m->w.planes = m->planes[list->parts[i].volume];
-        walk_split_node(&m->w, node, list->parts[i].planes, &s.splits[i]);
+        walk_split(&m->w, node, list->parts[i].planes, &s.splits[i]);
         many_split_add(&s, i);
     }
     for (uint32_t rest = m->is_far ? s.touching & ~s.whole : 0; rest; rest &= rest - 1) {
         const uint32_t child = node->first_child + cull_lowest_bit(rest);
         if (level > 2) prefetch_bytes(&index->nodes[child], sizeof(index_node));
-        else prefetch_bytes(&index->bottoms[child], sizeof(index_bottom));
+        else prefetch_bytes(&index->bottoms[child], sizeof(index_node));
     }
     const uint64_t order = level == 2 && index->level_count > 2 ? AS_THEY_STAND : near_order(&m->w, node);
     for (uint32_t rest = reorder(s.touching, order); rest; rest &= rest - 1) {
@@ -130,7 +170,8 @@ static uint32_t walk_many(const walk_query *q, cull_run *runs, uint32_t *nodes_v
     uint32_t *const changes = &runs[0].first;
     many_walk m;
     part_list list = {.count = 0};
-    m.w = (walk){.index = index, .eye = q->eye, .found = {changes, 0, 0}, .order = q->order};
+    m.w = (walk){.index = index, .eye = q->eye, .order = q->order};
+    m.found = (found){changes, 0, 0};
     m.reach = cull_block_reach(q->eye);
     m.is_far = index->bytes > WALK_NEAR_BYTES;
     for (uint32_t v = 0; v < q->volume_count; v++) {
@@ -140,7 +181,8 @@ static uint32_t walk_many(const walk_query *q, cull_run *runs, uint32_t *nodes_v
     if (index->level_count == 1) many_bottom(&m, index->bottoms, &list);
     else many_node(&m, &index->nodes[index->node_count - 1], index->level_count, &list);
     *nodes_visited += m.w.nodes;
-    return changes_to_runs(m.w.found, changes);
+    if (m.found.open) *m.found.out++ = m.found.at;
+    return changes_to_runs(changes, m.found.out);
 }
 
 static uint32_t walk_any(const walk_query *q, cull_run *runs, uint32_t *nodes_visited)

@@ -1,5 +1,10 @@
-// A mask of children brought into another order, for CPUs with BMI2. Included by sources that have included <immintrin.h>.
+// Masks of children brought together or into another order, for CPUs with BMI2. Included by sources that have included <immintrin.h>.
 // SPDX-License-Identifier: MIT
+
+static inline uint32_t pick(uint32_t bits, uint32_t mask)
+{
+    return _pext_u32(bits, mask);
+}
 
 static inline __m128i nibbles_apart(uint64_t nibbles) // 16 bytes
 {

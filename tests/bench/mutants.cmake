@@ -78,13 +78,13 @@ endif()
 portcullis_mutant(octree shrinks-a-plane walk_body.h
   "cull_block_planes(q->volumes, planes);" "cull_block_planes(q->volumes, planes); planes[0].limit += 0.5f;")
 portcullis_mutant(octree skips-a-leaf-in-61 walk_body.h
-  "f = put_leaf(f, touching," "f = put_leaf(f, (bottom_first_leaf(node) + c) % 61 ? touching : 0,")
+  "s->visible[s->places[i]] = cull" "s->visible[s->places[i]] = s->leaves[i] % 61 == 0 ? 0 : cull")
 portcullis_mutant(octree drops-what-a-parent-cuts walk_body.h
   "out->cut &= out->touching;" "out->touching &= ~(out->cut & 0x80u); out->cut &= out->touching;")
 portcullis_mutant(octree forgets-the-last-of-a-leaf walk_body.h
-  "planes, split->planes[c]) & ((1u << count) - 1)" "planes, split->planes[c]) & ((1u << (count - 1)) - 1)")
+  "s->w.planes, s->planes[i]);" "s->w.planes, s->planes[i]) & ALL_ITEMS >> 1;")
 portcullis_mutant(octree keeps-boxes-too-small index.c
-  "high[i] = steps_above(" "high[i] = axis == 1 ? low[i] : steps_above(")
+  "firsts_fill(b, l, children, out->firsts);" "firsts_fill(b, l, children, out->firsts); for (int i = 0; l == 2 && i < 16; i++) out->boxes[64 + i] = out->boxes[16 + i];")
 portcullis_mutant(octree loses-the-last-run walk_body.h
   "    return run_count;" "    return run_count - (run_count > 8);")
 

@@ -479,7 +479,7 @@ static void wrong_wishes_are_refused_in_a_line_and_nothing_is_written(void **sta
         {"rooms", 0, "scene.json", "1 to 100000"},
         {"rooms", 4, "scene.map", ".json"},
         {"house", 3, "scene.json", "leave --size out"},
-        {"flagship", 3, "scene.json", "leave --size out"},
+        {"flagship", 3, "scene.json", "150 to 2000 metres"},
         {"flagship", GENERATE_SIZE_OF_KIND, "scene.obj", ".json"},
         {"house", GENERATE_SIZE_OF_KIND, "none/scene.json", "cannot write"},
     };

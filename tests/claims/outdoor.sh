@@ -149,6 +149,7 @@ cheap() {
   "$portcullis" generate swarm --size 10000 -o "$work/swarm.boxes" || exit 1
   repeat=5 run 'swarm auto:100' "$work/swarm.boxes" auto:100 octree twophase
   costs twophase 1.03
+  held "$name twophase: tests a frame" "$(figure twophase queries)" '<=' 20
 }
 
 last() { # believes stale answers: the path that turns says how wrong

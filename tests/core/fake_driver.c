@@ -85,6 +85,22 @@ static uint32_t fake_collect(void *user, uint32_t zone, collect_how how, uint32_
     return got;
 }
 
+static void fake_draw_clipped(void *user, uint32_t zone, const cull_clipped *clipped, uint32_t count)
+{
+    fake_driver *f = user;
+    (void)zone;
+    note(f, FAKE_DRAW_CLIPPED);
+    f->clips += count;
+    for (uint32_t i = 0; i < count; ++i) count_runs(f->clipped, clipped[i].runs, clipped[i].run_count);
+}
+
+static void fake_check_slots(void *user, uint32_t zone, uint8_t *slots, uint32_t count)
+{
+    fake_driver *f = user;
+    (void)zone;
+    for (uint32_t i = 0; i < count && f->loses_slots; ++i) slots[i] = 0;
+}
+
 void fake_driver_init(fake_driver *f)
 {
     *f = (fake_driver){0};
@@ -92,11 +108,11 @@ void fake_driver_init(fake_driver *f)
 
 void fake_driver_new_frame(fake_driver *f)
 {
-    f->event_count = f->captures = f->shows = f->tests = 0;
-    for (uint32_t i = 0; i < FAKE_PLACES_MOST; ++i) f->drawn[i] = f->shown[i] = 0;
+    f->event_count = f->captures = f->shows = f->tests = f->clips = 0;
+    for (uint32_t i = 0; i < FAKE_PLACES_MOST; ++i) f->drawn[i] = f->shown[i] = f->clipped[i] = 0;
 }
 
 frame_driver fake_driver_of(fake_driver *f)
 {
-    return (frame_driver){f, fake_draw, fake_draw_movers, fake_capture, fake_show, fake_test, fake_collect};
+    return (frame_driver){f, fake_draw, fake_draw_movers, fake_capture, fake_show, fake_test, fake_collect, fake_draw_clipped, fake_check_slots};
 }

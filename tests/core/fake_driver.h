@@ -8,7 +8,7 @@
 enum { FAKE_PLACES_MOST = 4096, FAKE_EVENTS_MOST = 256, FAKE_TESTS_MOST = 4096 };
 #define FAKE_NO_ANSWER UINT32_MAX
 
-typedef enum fake_event { FAKE_DRAW, FAKE_DRAW_MOVERS, FAKE_CAPTURE, FAKE_SHOW, FAKE_TEST, FAKE_COLLECT_READY, FAKE_COLLECT_ALL } fake_event;
+typedef enum fake_event { FAKE_DRAW, FAKE_DRAW_MOVERS, FAKE_CAPTURE, FAKE_SHOW, FAKE_TEST, FAKE_COLLECT_READY, FAKE_COLLECT_ALL, FAKE_DRAW_CLIPPED } fake_event;
 
 typedef struct fake_pending {
     uint32_t tag, pixels, frame, collects_left;
@@ -22,7 +22,9 @@ typedef struct fake_driver {
     uint32_t event_count;
     uint32_t drawn[FAKE_PLACES_MOST]; // times that a place was drawn; movers behind the items
     uint32_t shown[FAKE_PLACES_MOST]; // times that it stood in a picture
-    uint32_t captures, shows, tests, last_slot;
+    uint32_t clipped[FAKE_PLACES_MOST]; // times that it was drawn clipped
+    uint32_t captures, shows, tests, clips, last_slot;
+    uint32_t loses_slots; // 1: no slot holds its picture any more
     fake_pending pending[FAKE_TESTS_MOST];
     uint32_t pending_count;
 } fake_driver;

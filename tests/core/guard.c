@@ -45,7 +45,8 @@ static void run_a_frame(const char *fault)
 static void a_culler_that_writes_behind_the_end_is_stopped_there(void **state)
 {
     (void)state;
-    static const char *const faults[] = {"writes_past_runs", "writes_past_tests", "writes_past_captures", "writes_past_pictures"};
+    static const char *const faults[] = {"writes_past_runs", "writes_past_tests", "writes_past_captures", "writes_past_pictures",
+                                         "writes_past_clipped"};
     for (int i = 0; i < 4; ++i) {
         const int signal = signal_of(run_a_frame, faults[i]);
         if (signal != SIGSEGV && signal != SIGBUS) fail_msg("%s: ended with signal %d", faults[i], signal);

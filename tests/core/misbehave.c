@@ -73,6 +73,21 @@ static const fault_case bounds[] = {
     {"captures_endless", "more captures than it told", "0"},
     {"pictures_endless", "more pictures than it told", "0"},
     {"capture_composed_early", "a slot that is empty", "0"},
+    {"clipped_too_many", "more clipped items than it told", "0"},
+    {"clipped_endless", "more clipped items than it told", "0"},
+    {"clipped_plane_count", "over 4 clip planes", "0"},
+    {"clipped_plane_nan", "clip planes are not finite", "0"},
+    {"clipped_plane_infinite", "clip planes are not finite", "0"},
+    {"clipped_box", "not finite", "0"},
+    {"clipped_null_runs", "without its runs", "0"},
+    {"clipped_endless_runs", "more runs than there are items", "0"},
+    {"clipped_wild_run", "a run outside the zone", "0"},
+    {"clipped_mover", "a run outside the zone", "0"},
+    {"clipped_mover", "a run outside the zone", "1"},
+    {"clipped_zone_twice", "an item given twice", "0"},
+    {"clipped_taken_back", "took runs or pictures back", "0"},
+    {"replaces_clipped", "it replaced a list of the batch", "0"},
+    {"replaces_keep_clipped", "it replaced a list of the batch", "0"},
 };
 
 enum { BAD_FRAMES = 3 };
@@ -137,6 +152,19 @@ static void checking_all_catches_the_same_and_an_item_given_twice(void **state)
     assert_case_is_caught("none+%s", &over_steps, VIEWER_CHECK_ALL);
 }
 
+static void checking_all_catches_an_item_clipped_twice_at_one_seam_or_clipped_and_whole(void **state)
+{
+    (void)state;
+    static const fault_case cases[] = {{"clipped_item_twice", "an item given twice", "0"},
+                                       {"clipped_and_whole", "an item given clipped and whole", "0"},
+                                       {"clipped_and_whole", "an item given clipped and whole", "1"},
+                                       {"clipped_then_whole", "an item given clipped and whole", "0"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; ++i) {
+        assert_case_is_caught("%s", &cases[i], VIEWER_CHECK_ALL);
+        assert_case_is_caught("none+%s", &cases[i], VIEWER_CHECK_ALL);
+    }
+}
+
 // What a stage in front of a filter may not do; what else it does wrong is caught as in the last stage.
 static void a_stage_that_steps_or_asks_before_the_last_is_caught(void **state)
 {
@@ -151,12 +179,14 @@ static void a_stage_that_steps_or_asks_before_the_last_is_caught(void **state)
         {"replaces_runs", "it replaced a list", "0"},              {"replaces_captures", "it replaced a list", "0"},
     };
     static const fault_case middle = {"capture_given", "gives pictures, but is neither first nor last", "0"};
+    static const fault_case middle_clip = {"clipped_given", "clips items, but is neither first nor last", "0"};
     for (size_t i = 0; i < sizeof early / sizeof *early; ++i) {
         assert_case_is_caught("%s+testfilter[keep=all]", &early[i], VIEWER_CHECK_BOUNDS);
         assert_case_is_caught("%s+testcross+testfilter[keep=all,movers=1]", &early[i], VIEWER_CHECK_BOUNDS);
         assert_case_is_caught("none+%s+testfilter[keep=all]", &early[i], VIEWER_CHECK_BOUNDS);
     }
     assert_case_is_caught("none+%s+testfilter[keep=all]", &middle, VIEWER_CHECK_BOUNDS);
+    assert_case_is_caught("none+%s+testfilter[keep=all]", &middle_clip, VIEWER_CHECK_BOUNDS);
 }
 
 static void what_was_drawn_stays_in_the_set_whatever_is_written_over_it(void **state)
@@ -235,6 +265,7 @@ int main(void)
         cmocka_unit_test(every_fault_of_a_select_is_caught_by_bounds),
         cmocka_unit_test(every_fault_of_a_filter_is_caught_by_bounds),
         cmocka_unit_test(checking_all_catches_the_same_and_an_item_given_twice),
+        cmocka_unit_test(checking_all_catches_an_item_clipped_twice_at_one_seam_or_clipped_and_whole),
         cmocka_unit_test(a_stage_that_steps_or_asks_before_the_last_is_caught),
         cmocka_unit_test(what_was_drawn_stays_in_the_set_whatever_is_written_over_it),
         cmocka_unit_test(a_fault_is_told_even_after_many_warnings_of_a_file),

@@ -312,6 +312,37 @@ static void a_street_is_walked_on_the_ground(void **state)
     scene_free(s, allocator_heap());
 }
 
+static void expect_no_street(const scene *s)
+{
+    heard h;
+    report r = hear(&h);
+    camera_path path = {0};
+    assert_int_equal(camera_path_load("auto:street:20", s, ASPECT, allocator_heap(), &r, &path), RESULT_BAD_INPUT);
+    assert_non_null(strstr(h.text, "use auto:walk:20"));
+    assert_null(path.cameras);
+}
+
+// Walls that hang in the air, and rooms under a ceiling: no walk beside or over them is one in a street.
+static void a_street_is_refused_where_there_is_no_ground_under_the_sky(void **state)
+{
+    (void)state;
+    heard h;
+    report r = hear(&h);
+    scene *s = NULL;
+    char text[4096];
+    int size = 0;
+    for (int i = 0; i < 6; ++i)
+        for (int k = 0; k < 3; ++k)
+            size += snprintf(text + size, sizeof text - (size_t)size, "v %d %d %d\n", 20 * i, 20 + 5 * i + (k == 1 ? 2 : 0), k == 2 ? 2 : 0);
+    for (int i = 0; i < 6; ++i) size += snprintf(text + size, sizeof text - (size_t)size, "f %d %d %d\n", 3 * i + 1, 3 * i + 3, 3 * i + 2);
+    assert_int_equal(import_obj("t.obj", text, (size_t)size, allocator_heap(), &r, &s), RESULT_OK);
+    expect_no_street(s);
+    scene_free(s, allocator_heap());
+    s = real_map("quake/e1m1.map");
+    expect_no_street(s);
+    scene_free(s, allocator_heap());
+}
+
 static void a_flight_is_over_all_roofs_near_it(void **state)
 {
     (void)state;
@@ -535,6 +566,7 @@ int main(void)
         cmocka_unit_test(a_walk_keeps_its_pace_and_its_distance_in_maps),
         cmocka_unit_test(a_walk_keeps_its_pace_and_its_distance_among_boxes),
         cmocka_unit_test(a_street_is_walked_on_the_ground),
+        cmocka_unit_test(a_street_is_refused_where_there_is_no_ground_under_the_sky),
         cmocka_unit_test(a_flight_is_over_all_roofs_near_it),
         cmocka_unit_test(one_who_spins_turns_by_as_much_each_frame),
         cmocka_unit_test(a_scene_without_any_room_has_a_walk_beside_it),

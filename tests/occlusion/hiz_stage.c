@@ -16,7 +16,12 @@ static void *room(size_t count, size_t size)
 
 void stage_open(hiz_stage *s, const cull_zone *zone, const char *prune, const char *threads, const char *isa)
 {
-    const char *const values[] = {prune, threads, isa};
+    stage_open_pixels(s, zone, prune, threads, isa, "auto");
+}
+
+void stage_open_pixels(hiz_stage *s, const cull_zone *zone, const char *prune, const char *threads, const char *isa, const char *pixels)
+{
+    const char *const values[] = {prune, threads, isa, pixels};
     hiz_options options;
     memset(s, 0, sizeof *s);
     culler_host_init(&s->host, 0);
@@ -60,7 +65,7 @@ void stage_run(hiz_stage *s, const hiz_scene_view *v, const cull_mover *movers, 
     free(s->runs);
     s->runs = room(s->item_count + mover_count, sizeof *s->runs);
     cull_batch batch = {.runs = s->runs};
-    hiz_counters counters = {0, 0, 0};
+    hiz_counters counters = {.rectangles = 0};
     if (hiz_step(&s->h, NULL, &visit, &batch, &counters) != CULL_DONE) abort();
     s->run_count = batch.run_count;
     s->limits_hit = batch.limits_hit;

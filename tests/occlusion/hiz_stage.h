@@ -19,6 +19,7 @@ typedef struct hiz_stage {
     uint32_t run_count, limits_hit, item_count;
 } hiz_stage;
 void stage_open(hiz_stage *s, const cull_zone *zone, const char *prune, const char *threads, const char *isa); // aborts without memory
+void stage_open_pixels(hiz_stage *s, const cull_zone *zone, const char *prune, const char *threads, const char *isa, const char *pixels);
 void stage_close(hiz_stage *s);
 
 typedef struct hiz_scene_view {

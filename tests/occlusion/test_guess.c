@@ -9,6 +9,42 @@
 
 #include <cmocka.h>
 
+#include "plugins/occlusion/ledger.h"
+
+// Of tests that each take away `gained` polygons, and of which `shown` polygons are left.
+static int zone_pays(uint32_t gained, uint32_t shown)
+{
+    ledger_page zone = {0};
+    for (int i = 0; i < 100; i++) ledger_enter_zone(&zone, LEDGER_TEST, gained);
+    ledger_show(&zone, shown * 100);
+    return ledger_zone_pays(&zone);
+}
+
+static void a_zone_pays_whose_tests_bring_in_a_fifth_of_what_is_looked_at(void **state)
+{
+    (void)state;
+    assert_true(zone_pays(2, 8));
+    assert_false(zone_pays(2, 9));
+    assert_true(zone_pays(1, 0)); // a test is worth two polygons
+    assert_false(zone_pays(0, 0));
+}
+
+static void a_zone_at_rest_is_tested_again_when_its_pause_is_over_and_much_is_hidden(void **state)
+{
+    ledger_page zone = {0};
+    (void)state;
+    ledger_rest(&zone, 100);
+    assert_true(ledger_rests(&zone, 101));
+    for (int i = 0; i < 30; i++) ledger_enter_zone(&zone, LEDGER_TEST, 10);
+    ledger_show(&zone, 600);
+    assert_true(ledger_rests(&zone, 107));
+    assert_false(ledger_rests(&zone, 109));
+    ledger_rest(&zone, 200); // the next pause is longer
+    assert_true(ledger_rests(&zone, 215));
+    for (int i = 0; i < 30; i++) ledger_enter_zone(&zone, LEDGER_TEST, 10);
+    assert_false(ledger_rests(&zone, 202)); // all of it hidden: at once
+}
+
 // A field of low boxes seen from above, none behind another; `wall`: and a wall at z = -3 that hides it from before.
 static void field_make(hand_zone *z, int has_wall)
 {
@@ -131,6 +167,36 @@ static void a_frame_broken_off_leaves_no_trace_in_the_next(void **state)
     hand_zone_free(&z);
 }
 
+// Far off it fills few cells of the coarse picture, which leave it for a test: of its parts, as it was found seen.
+static void a_far_zone_is_tested_whole_once(void **state)
+{
+    hand_zone z;
+    fake_culler c;
+    fake_viewer v;
+    static fake_view view;
+    cull_box boxes[400], all = {{0, 0, 300}, {0, 0, 300}};
+    (void)state;
+    for (int i = 0; i < 400; i++) {
+        const float x = (float)(i % 20) * 2, zz = (float)(i / 20) * 2 + 300;
+        boxes[i] = (cull_box){{x, 0, zz}, {x + 1, 20, zz + 1}};
+        all = cull_box_union(all, boxes[i]);
+    }
+    zone_of_boxes(boxes, 400, &z);
+    z.zone.mover_capacity = FAKE_MOVERS_MOST;
+    fake_view_make(&view, (cull_vec3){0, 0.5f, 0}, 0, 0);
+    assert_int_equal(fake_culler_open(&c, &z, "twophase", CHAIN_SELECT, 0), CULL_OK);
+    fake_viewer_open(&v, &c);
+    assert_null(fake_frame_cut(&v, &view, 0, 1));
+    assert_int_equal(v.tests_asked, 1);
+    assert_memory_equal(&v.tests[0].box, &all, sizeof all);
+    assert_null(fake_frame_cut(&v, &view, 0, 2));
+    assert_true(v.tests_asked > 2);
+    for (uint32_t i = 0; i + 1 < v.tests_asked; i++) assert_memory_not_equal(&v.tests[i].box, &all, sizeof all);
+    fake_viewer_close(&v);
+    fake_culler_close(&c);
+    hand_zone_free(&z);
+}
+
 // last draws at once what it knows nothing of, drops what was hidden, and is a frame late where something comes into sight.
 static void last_is_a_frame_late_and_takes_one_step(void **state)
 {
@@ -164,10 +230,13 @@ static void last_is_a_frame_late_and_takes_one_step(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_zone_pays_whose_tests_bring_in_a_fifth_of_what_is_looked_at),
+        cmocka_unit_test(a_zone_at_rest_is_tested_again_when_its_pause_is_over_and_much_is_hidden),
         cmocka_unit_test(where_nothing_is_hidden_it_stops_asking),
         cmocka_unit_test(it_asks_again_when_things_come_to_be_hidden),
         cmocka_unit_test(views_of_one_culler_do_not_mix),
         cmocka_unit_test(a_frame_broken_off_leaves_no_trace_in_the_next),
+        cmocka_unit_test(a_far_zone_is_tested_whole_once),
         cmocka_unit_test(last_is_a_frame_late_and_takes_one_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

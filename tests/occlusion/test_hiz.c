@@ -151,6 +151,7 @@ static void nothing_that_leaves_a_pixel_is_dropped(void **state)
 {
     static trial t;
     const uint64_t boxes_wanted = getenv("PORTCULLIS_LONG") ? 10000000 : 200000;
+    static const char *const pixels[] = {"1", "2", "4"};
     uint64_t seed = 17, boxes = 0, hidden = 0;
     (void)state;
     for (uint32_t n = 0; boxes < boxes_wanted; n++) {
@@ -158,7 +159,7 @@ static void nothing_that_leaves_a_pixel_is_dropped(void **state)
         hiz_stage s;
         const uint32_t *size = sizes[n % 4], count = 1 + random_below(&seed, n % 8 ? 80 : 300);
         trial_open(&t, (scene_kind)(n / 4 % SCENE_KINDS), &seed, count, size[0], size[1]);
-        stage_open(&s, &t.zone.zone, n % 7 ? "on" : "off", "1", "auto");
+        stage_open_pixels(&s, &t.zone.zone, n % 7 ? "on" : "off", "1", "auto", pixels[n % 3]);
         stage_run(&s, &t.view, t.movers, QUERIES);
         hidden += trial_check(&t, &s);
         boxes += count + QUERIES;
@@ -192,7 +193,7 @@ static void what_walls_and_meshes_hide_is_hidden(void **state)
             walls.zone.item_count = count;
         }
         for (uint32_t i = 0; i < QUERIES; i++) t.movers[i].id = items + i;
-        stage_open(&s, &walls.zone, "on", "1", "auto");
+        stage_open_pixels(&s, &walls.zone, "on", "1", "auto", n % 4 < 2 ? "1" : "2");
         stage_run(&s, &t.view, t.movers, QUERIES);
         stage_set(&s, t.seen, items + QUERIES);
         oracle_open(&picture, &t.view, t.boxes, count, ORACLE_SNAPPED);

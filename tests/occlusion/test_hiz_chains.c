@@ -114,11 +114,103 @@ static void a_broken_allocation_breaks_nothing_else(void **state)
     hand_zone_free(&town);
 }
 
+// ---- Whether it pays ----
+
+enum { SIDE = 6, FIELD = SIDE * SIDE, WALL = FIELD, SCENE = FIELD + 1 };
+
+// Low boxes far apart, and a wall that hides them all from behind it.
+static void field_make(hand_zone *z)
+{
+    cull_box boxes[SCENE];
+    for (int i = 0; i < FIELD; i++) {
+        const float x = 10 * (float)(i % SIDE) - 30, at = 10 * (float)(i / SIDE);
+        boxes[i] = (cull_box){{x, 0, at}, {x + 6, 2, at + 6}};
+    }
+    boxes[WALL] = (cull_box){{-200, -100, -31}, {200, 200, -30}};
+    zone_of_boxes(boxes, SCENE, z);
+    for (int i = 0; i < SCENE; i++) z->items[i].polygon_count = 6; // less than 128 in all are not worth it behind another culler
+    z->zone.mover_capacity = FAKE_MOVERS_MOST;
+}
+
+static void field_frame(fake_viewer *v, const fake_view *view)
+{
+    static uint8_t visible[SCENE + FAKE_MOVERS_MOST];
+    const char *fault = fake_frame(v, view, 0);
+    if (fault) fail_msg("%s", fault);
+    memset(visible, 0, sizeof visible);
+    fake_truth(v, view, visible);
+    for (uint32_t i = 0; i < SCENE; i++) assert_true(!visible[i] || v->drawn[i]);
+}
+
+static void where_nothing_is_hidden_it_rests_until_something_is(void **state)
+{
+    static fake_view above, behind;
+    hand_zone field;
+    (void)state;
+    field_make(&field);
+    fake_view_make(&above, (cull_vec3){0, 60, -10}, 0, -1);
+    fake_view_make(&behind, (cull_vec3){0, 5, -40}, 0, 0);
+    for (int chain = CHAIN_SELECT; chain <= CHAIN_CANDIDATES; chain++) {
+        fake_culler c;
+        fake_viewer v;
+        uint32_t rested = 0;
+        assert_int_equal(fake_culler_open(&c, &field, "hiz", (fake_chain)chain, 0), CULL_OK);
+        fake_viewer_open(&v, &c);
+        field_frame(&v, &behind);
+        assert_true(v.drawn_count < 4); // it pays at once
+        for (uint32_t f = 0; f < 80; f++) field_frame(&v, &above);
+        for (uint32_t f = 0; f < 80; f++) {
+            field_frame(&v, &behind);
+            rested += v.drawn_count > 10;
+        }
+        assert_in_range(rested, 1, 64); // it was off, and is on again before the longest pause is over
+        assert_true(v.drawn_count < 4);
+        fake_viewer_close(&v);
+        fake_culler_close(&c);
+        assert_true(failing_allocator_is_clean(&c.host.memory));
+    }
+    hand_zone_free(&field);
+}
+
+static void each_reason_is_told(void **state)
+{
+    static fake_view behind;
+    hand_zone field;
+    fake_culler c;
+    fake_viewer v;
+    char text[128];
+    (void)state;
+    field_make(&field);
+    fake_view_make(&behind, (cull_vec3){0, 5, -40}, 0, 0);
+    assert_int_equal(fake_culler_open(&c, &field, "hiz", CHAIN_CANDIDATES, 0), CULL_OK);
+    fake_viewer_open(&v, &c);
+    v.allowed[20] = 0;
+    field_frame(&v, &behind);
+    const cull_explain *explain = c.plugin->get_extension(c.culler, CULL_EXT_EXPLAIN);
+    const cull_run all[2] = {{0, 20}, {21, SCENE - 21}};
+    cull_visit visit = {.view = &behind.view, .volumes = behind.volumes, .volume_count = behind.volume_count, .candidates = all, .candidate_count = 2, .scratch = v.scratch};
+    explain->item(v.query, &visit, WALL, text, sizeof text);
+    assert_non_null(strstr(text, "kept"));
+    explain->item(v.query, &visit, 2, text, sizeof text);
+    assert_non_null(strstr(text, "hides its box"));
+    explain->item(v.query, &visit, 20, text, sizeof text);
+    assert_non_null(strstr(text, "left it out"));
+    fake_view_make(&behind, (cull_vec3){0, 5, -40}, 3.14159, 0);
+    visit.volumes = behind.volumes;
+    explain->item(v.query, &visit, 2, text, sizeof text);
+    assert_non_null(strstr(text, "outside every volume"));
+    fake_viewer_close(&v);
+    fake_culler_close(&c);
+    hand_zone_free(&field);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(nothing_visible_is_dropped_in_any_chain),
         cmocka_unit_test(all_ways_of_computing_draw_as_much),
+        cmocka_unit_test(where_nothing_is_hidden_it_rests_until_something_is),
+        cmocka_unit_test(each_reason_is_told),
         cmocka_unit_test(a_broken_allocation_breaks_nothing_else),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -18,11 +18,13 @@ typedef struct town {
     camera camera;
     hiz_scene_view view;
     cull_mover movers[MOVERS];
+    const char *pixels;
 } town;
 
 // Boxes of all sizes, some of them as six walls, and see-through ones among them.
 static void town_open(town *t, uint64_t seed, uint32_t width_px, uint32_t height_px)
 {
+    t->pixels = seed % 3 == 0 ? "1" : seed % 3 == 1 ? "2" : "4";
     hand_zone_open(&t->zone, ITEMS * 6, ITEMS * 24);
     for (uint32_t i = 0; i < ITEMS; i++) {
         const float x = (float)random_between(&seed, -80, 80), z = (float)random_between(&seed, -80, 80), size = (float)random_between(&seed, 0.2, i % 4 ? 2 : 18);
@@ -96,7 +98,7 @@ static void parallel_for(const cull_host *host, void (*task)(void *, uint32_t), 
 static void set_of(const town *t, const char *prune, const char *threads, uint8_t *seen)
 {
     hiz_stage s;
-    stage_open(&s, &t->zone.zone, prune, threads, "auto");
+    stage_open_pixels(&s, &t->zone.zone, prune, threads, "auto", t->pixels);
     s.host.host.parallel_for = parallel_for;
     stage_run(&s, &t->view, t->movers, MOVERS);
     stage_set(&s, seen, t->zone.zone.item_count + MOVERS);
@@ -217,7 +219,7 @@ static void a_picture_as_large_as_the_buffer_has_the_same_set_on_threads(void **
 static void memory_that_runs_out_is_told(void **state)
 {
     static town t;
-    static const char *const values[] = {"on", "1", "auto"};
+    static const char *const values[] = {"on", "1", "auto", "auto"};
     hiz_options options;
     (void)state;
     town_open(&t, 51, 640, 360);
@@ -238,7 +240,8 @@ static void memory_that_runs_out_is_told(void **state)
 
 static void options_out_of_range_are_refused(void **state)
 {
-    static const char *const wrong[][3] = {{"maybe", "1", "auto"}, {"on", "3", "auto"}, {"on", "", "auto"}, {"on", "16", "auto"}, {"on", "1", "mmx"}};
+    static const char *const wrong[][4] = {{"maybe", "1", "auto", "auto"}, {"on", "3", "auto", "auto"}, {"on", "", "auto", "auto"}, {"on", "16", "auto", "auto"},
+                                           {"on", "1", "mmx", "auto"}, {"on", "1", "auto", "3"}, {"on", "1", "auto", ""}, {"on", "1", "auto", "22"}};
     (void)state;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         culler_host host;

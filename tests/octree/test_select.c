@@ -77,6 +77,43 @@ static void a_tree_of_five_levels_finds_them_too(void **state)
     }
 }
 
+// One plane through every box's height cuts all leaves: several times as many as a walk lists before it judges them.
+static void a_plane_that_cuts_every_leaf_is_answered_item_by_item(void **state)
+{
+    (void)state;
+    enum { SIDE = 150, COUNT = SIDE * SIDE };
+    static cull_box boxes[COUNT];
+    static uint8_t seen[COUNT];
+    for (uint32_t i = 0; i < COUNT; i++) {
+        const float x = (float)(i % SIDE), z = (float)(i / SIDE), height = i * 2654435761u >> 31 ? 1.0f : 0.25f;
+        boxes[i] = (cull_box){{x, 0, z}, {x + 0.75f, height, z + 0.75f}};
+    }
+    hand_zone z;
+    zone_of_boxes(boxes, COUNT, &z);
+    static made_volumes v;
+    uint64_t r = 65;
+    volumes_make(&r, boxes, COUNT, 1, &v); // for its view
+    const cull_plane above = {{0, 1, 0}, -0.5f};
+    const cull_volume volume = {&above, 1, 0};
+    for (int i = 0; i < ISA_COUNT; i++) {
+        if (!octree_has_isa(isas[i])) continue;
+        culler_host h;
+        session s;
+        const octree_values values = {"oct", "2", "0", isas[i]};
+        culler_host_init(&h, 0);
+        assert_int_equal(octree_open(&s, &h, &z.zone, &values), CULL_OK);
+        session_select(&s, &v.view, &volume, 1);
+        assert_true(s.run_count <= s.built.max_runs);
+        memset(seen, 0, sizeof seen);
+        for (uint32_t run = 0; run < s.run_count; run++)
+            for (uint32_t p = s.runs[run].first; p < s.runs[run].first + s.runs[run].count; p++) seen[s.built.order[p]]++;
+        for (uint32_t item = 0; item < COUNT; item++) assert_int_equal(seen[item], boxes[item].max.y >= 0.5f);
+        session_close(&s);
+        assert_true(failing_allocator_is_clean(&h.memory));
+    }
+    hand_zone_free(&z);
+}
+
 // The same scene shuffled, moved by whole steps of a coarse grid, and turned by a quarter: the same items, whatever the tree is then.
 static void shuffled_moved_and_turned_scenes_show_the_same_items(void **state)
 {
@@ -245,6 +282,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_tree_and_instruction_set_finds_exactly_the_boxes_of_a_loop),
         cmocka_unit_test(a_tree_of_five_levels_finds_them_too),
+        cmocka_unit_test(a_plane_that_cuts_every_leaf_is_answered_item_by_item),
         cmocka_unit_test(shuffled_moved_and_turned_scenes_show_the_same_items),
         cmocka_unit_test(backface_drops_the_walls_that_frustum_drops),
         cmocka_unit_test(runs_come_near_to_far),

@@ -1,77 +1,6 @@
 // Captures and pictures: what was taken through a parallelogram looks the same shown at its place.
 // SPDX-License-Identifier: MIT
-#include "fixture.h"
-
-#include <stdlib.h>
-#include <string.h>
-
-enum { SIDE = 128, QUADS = 60, SLOTS = 65536 };
-
-static void drop_pixels(uint8_t *rgba)
-{
-    memory_free(allocator_heap(), rgba, (size_t)SIDE * SIDE, 4);
-}
-
-static frame_request request(const camera *c)
-{
-    return (frame_request){.camera = c, .width_px = SIDE, .height_px = SIDE, .mode = RENDER_ITEMS};
-}
-
-static cull_vec3 in_zone(const bed *b, double x, double y, double z)
-{
-    const double *o = b->s->whole.origin;
-    return (cull_vec3){(float)(x - o[0]), (float)(y - o[1]), (float)(z - o[2])};
-}
-
-// The whole picture of a camera at (x, y, z), through the square that it sees at a distance.
-static cull_capture whole_picture(const bed *b, const camera *c, double distance, const cull_run *runs, uint32_t run_count)
-{
-    const float side = (float)(2 * distance);
-    return (cull_capture){.runs = runs, .run_count = run_count, .corner = in_zone(b, c->eye[0] - distance, c->eye[1] - distance, c->eye[2] - distance),
-                          .right = {side, 0, 0}, .up = {0, side, 0}, .slot = 7, .width_px = SIDE, .height_px = SIDE};
-}
-
-static uint32_t pixels_that_differ(const uint8_t *a, const uint8_t *b)
-{
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < SIDE * SIDE; ++i) {
-        int most = 0;
-        for (uint32_t k = 0; k < 3; ++k) {
-            const int d = abs(a[4 * i + k] - b[4 * i + k]);
-            most = d > most ? d : most;
-        }
-        count += most > 8;
-    }
-    return count;
-}
-
-static void scene_with_slots(bed *b, const quad *quads, size_t count)
-{
-    bed_scene(b, quads, count, NULL);
-    assert_int_equal(render_layout_slots(b->l, &(uint32_t){SLOTS}, &b->r), RESULT_OK);
-}
-
-static void random_scene(bed *b, uint32_t seed)
-{
-    static quad quads[QUADS];
-    for (int i = 0; i < QUADS; ++i) {
-        const double x = 20 * random_unit(&seed) - 10, y = 20 * random_unit(&seed) - 10, z = -4 * random_unit(&seed) - 8;
-        quads[i] = quad_at(z, x, y, x + 6 * random_unit(&seed) + 0.1, y + 6 * random_unit(&seed) + 0.1);
-    }
-    scene_with_slots(b, quads, QUADS);
-}
-
-static uint8_t *frame_with(bed *b, const frame_request *q, const cull_capture *capture, const cull_picture *picture, const cull_run *more)
-{
-    uint8_t *rgba = memory_alloc(allocator_heap(), (size_t)SIDE * SIDE, 4);
-    assert_int_equal(renderer_begin(b->g, q, &b->r), RESULT_OK);
-    if (capture) renderer_capture(b->g, b->l, 0, capture);
-    if (picture) renderer_show(b->g, b->l, 0, picture);
-    if (more) bed_draw(b, b->l, more, 1);
-    renderer_end(b->g);
-    assert_int_equal(renderer_read(b->g, rgba, &b->r), RESULT_OK);
-    return rgba;
-}
+#include "picture_fixture.h"
 
 static void a_picture_shown_from_where_it_was_taken_is_the_geometry(void **state)
 {
@@ -143,7 +72,8 @@ static void a_picture_has_holes_where_nothing_was(void **state)
     const cull_run front = {0, 1}, back = {1, 1}, all = {0, 2};
     scene_with_slots(b, quads, 2);
     uint8_t *plain = bed_frame(b, &q, b->l, &all, 1);
-    const cull_capture capture = whole_picture(b, &c, 8, &front, 1);
+    cull_capture capture = whole_picture(b, &c, 8, &front, 1);
+    capture.keep_depth = 1;
     uint8_t *shown = frame_with(b, &q, &capture, &(cull_picture){.slot = 7, .runs = &front, .run_count = 1}, &back);
     assert_in_range(pixels_that_differ(plain, shown), 0, SIDE);
     drop_pixels(plain);

@@ -186,7 +186,7 @@ static uint32_t pixels_that_differ(const uint8_t *a, const uint8_t *b)
     return count;
 }
 
-static uint8_t *show_zone(bed *b, const render_layout *l, uint32_t zone, const camera *c)
+static uint8_t *show_zone(bed *b, render_layout *l, uint32_t zone, const camera *c)
 {
     const cull_run run = {0, b->s->zones[zone].item_count};
     uint8_t *rgba = memory_alloc(allocator_heap(), (size_t)SIDE * SIDE, 4);

@@ -124,6 +124,62 @@ static void after_a_cut_each_zone_goes_to_its_end_before_the_next(void **state)
     site_close(&s);
 }
 
+static int is_work_of(const site_note *n, uint32_t zone)
+{
+    return n->event != SITE_MOVERS && n->event != SITE_READY && n->zone == zone;
+}
+
+// The notes of a frame, zone by zone: asserts that none of `singly` comes back once another zone has been at work, and that all
+// nearer zones have drawn when it begins. Returns how many such zones there were.
+static uint32_t assert_in_turn(const site_driver *d, const uint8_t *singly, const uint32_t *order, uint32_t count)
+{
+    uint32_t turns = 0;
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t first = d->note_count, end = 0;
+        for (uint32_t i = 0; i < d->note_count; i++) {
+            if (!is_work_of(&d->notes[i], order[k])) continue;
+            first = i < first ? i : first;
+            end = i + 1;
+        }
+        if (!singly[order[k]] || !end) continue;
+        for (uint32_t i = first; i < end; i++) assert_true(d->notes[i].event == SITE_READY || d->notes[i].zone == order[k]);
+        for (uint32_t n = 0; n < k; n++)
+            for (uint32_t i = end; i < d->note_count; i++) assert_false(is_work_of(&d->notes[i], order[n]));
+        turns++;
+    }
+    return turns;
+}
+
+static void who_asks_one_test_a_step_begins_when_all_nearer_zones_have_drawn(void **state)
+{
+    (void)state;
+    static site s;
+    static site_driver driver;
+    static site_sight sight;
+    const char *chains[ROOMS + 1];
+    uint8_t singly[ROOMS + 1] = {0};
+    uint32_t order[ROOMS + 1], turns = 0;
+    all_same(chains, "testmore[singly=1]");
+    chains[5] = "brute";
+    chains[6] = chains[7] = "testmore[wait=1]";
+    for (uint32_t i = 0; i <= ROOMS; i++) singly[i] = i < 5 || i > 7;
+    world_view *v = open_grid(&s, chains);
+    site_driver_init(&driver, &s);
+    driver.pixels_of = every_third_is_hidden;
+    uint64_t random = 5;
+    for (uint32_t frame = 1; frame <= 30; frame++) {
+        const camera c = site_random_camera(&random, &rooms);
+        frame_input q = site_input(&c, frame);
+        q.driver = site_driver_of(&driver);
+        site_driver_new_frame(&driver);
+        site_look(&s, v, &q, &sight);
+        assert_int_equal(sight.stats.faults, 0);
+        turns += assert_in_turn(&driver, singly, order, reached_with_items(&s, v, order));
+    }
+    assert_true(turns > 30);
+    site_close(&s);
+}
+
 // What the chain `testmore` of a zone keeps under the rule above.
 static int testmore_keeps(const zone_data *data, uint32_t place)
 {
@@ -296,6 +352,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_round_is_all_draws_then_all_tests_then_all_answers),
         cmocka_unit_test(after_a_cut_each_zone_goes_to_its_end_before_the_next),
+        cmocka_unit_test(who_asks_one_test_a_step_begins_when_all_nearer_zones_have_drawn),
         cmocka_unit_test(stepping_zones_draw_what_they_share_once_and_lose_none_of_it),
         cmocka_unit_test(a_fault_draws_its_own_zone_whole_and_leaves_the_others_exact),
         cmocka_unit_test(a_crosser_that_misbehaves_narrows_nothing),

@@ -3,8 +3,8 @@ layout(location = 0) out vec4 colour;
 layout(location = 8) uniform float alpha;       // of this pass
 layout(location = 9) uniform vec2 depth_range;  // distances of white and black, metres
 #ifdef SHADED
-layout(std430, binding = 1) readonly buffer material_block { uint material_colours[]; };
-in vec3 v_normal;
+in vec4 v_front;    // as it is seen from in front, lit at the vertices; w above 0: its normal points away from the eye
+flat in uint v_back; // from behind; alpha 0: it has no normal, and v_front is its paint
 #endif
 #ifdef EYE_POSITION
 in vec3 v_eye;
@@ -27,16 +27,17 @@ vec3 hashed_colour(uint n)
 }
 
 #ifdef SHADED
-vec3 lit(vec3 albedo)
+vec3 shaded()
 {
-    vec3 face = cross(dFdx(v_eye), dFdy(v_eye));
+#ifdef FLAT
+    if (v_back < 0x01000000u) {
+        vec3 face = cross(dFdx(v_eye), dFdy(v_eye));
+        face *= dot(face, v_eye) > 0.0 ? -1.0 : 1.0;
+        return lit(v_front.rgb, face / max(length(face), 1e-30)); // a face of no area has no direction; anything but NaN will do
+    }
+#endif
     // Seen edge-on a face may turn over when its corners are rounded to the raster's grid: what is all but edge-on is not turned round.
-    bool is_behind = !gl_FrontFacing && dot(v_normal, v_eye) > 0.2 * length(v_eye);
-    vec3 n = dot(v_normal, v_normal) > 0.25 ? v_normal * (is_behind ? -1.0 : 1.0) : face * (dot(face, v_eye) > 0.0 ? -1.0 : 1.0);
-    n = n / max(length(n), 1e-30); // a face of no area has no direction; anything but NaN will do
-    float sun = max(dot(n, vec3(0.47, 0.80, 0.37)), 0.0);
-    float fill = max(dot(n, vec3(-0.70, 0.25, -0.67)), 0.0);
-    return albedo * (vec3(0.42, 0.44, 0.48) + 0.10 * n.y + sun * vec3(0.56, 0.52, 0.44) + fill * vec3(0.17, 0.20, 0.24));
+    return !gl_FrontFacing && v_front.w > 0.0 ? unpackUnorm4x8(v_back).rgb : v_front.rgb;
 }
 #endif
 
@@ -44,8 +45,7 @@ void main()
 {
     if (surface_missing()) discard;
 #if defined(SHADED)
-    vec3 albedo = unpackUnorm4x8(material_colours[v_word & 0xffffu]).rgb;
-    vec3 c = (v_word & WORD_SKY) != 0u ? vec3(0.47, 0.70, 0.96) : lit(albedo);
+    vec3 c = shaded();
 #elif defined(ITEMS)
     vec3 c = hashed_colour(triangle_items[v_triangle]);
 #elif defined(ZONES)

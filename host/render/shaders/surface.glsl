@@ -1,6 +1,6 @@
 // What every fragment of the scene asks first: is there any surface here?
 flat in uint v_triangle;
-#if defined(CUT_OUT) || defined(SHADED) || defined(SIDES)
+#if defined(CUT_OUT) || defined(SIDES)
 flat in uint v_word;
 #endif
 #ifdef CUT_OUT

@@ -27,7 +27,7 @@ static int fault_is_known(const char *name)
         "none", "create_option", "create_zone", "create_memory", "create_blob", "create_odd", "create_null", "create_leaves",
         "build_option", "build_zone", "build_memory", "build_blob", "build_odd", "open_memory", "open_zone", "open_odd", "open_null", "open_leaves",
         "steps_none", "steps_over", "promises_more", "order_twice", "order_wild", "scratch_absurd", "runs_absurd", "tests_absurd",
-        "captures_absurd", "pictures_absurd", "slots_absurd", "captures_without_slots", "walks_nothing",
+        "captures_absurd", "pictures_absurd", "clipped_absurd", "slots_absurd", "captures_without_slots", "walks_nothing",
     };
     return bad_fault_find(name) || is_named(others, sizeof others / sizeof *others, name);
 }
@@ -72,6 +72,7 @@ static void tell_nonsense(const cull_culler *c, cull_built *out)
     if (has_fault(c, "slots_absurd")) out->slot_count = absurd;
     if (has_fault(c, "captures_without_slots")) out->slot_count = 0;
     if (has_fault(c, "walks_nothing")) out->walks_hierarchy = 1;
+    if (has_fault(c, "clipped_absurd")) out->max_clipped = absurd;
     if (c->values[SLOTS][0] == '0') out->max_captures = out->max_pictures = out->slot_count = 0;
 }
 
@@ -80,7 +81,7 @@ static cull_result build(cull_culler *c, const cull_zone *zone, const cull_hiera
     (void)lent;
     c->zone = zone;
     *out = (cull_built){.index_bytes = sizeof *c, .promises = CULL_SAMPLED, .max_runs = BAD_RUNS, .max_steps = BAD_STEPS, .max_tests = BAD_TESTS,
-                        .max_captures = BAD_CAPTURES, .max_pictures = BAD_PICTURES, .slot_count = BAD_SLOTS,
+                        .max_captures = BAD_CAPTURES, .max_pictures = BAD_PICTURES, .slot_count = BAD_SLOTS, .max_clipped = BAD_CLIPPED,
                         .takes_movers = c->values[MOVERS][0] == '1'};
     tell_nonsense(c, out);
     return build_error(c);

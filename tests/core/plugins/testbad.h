@@ -6,7 +6,7 @@
 #include <portcullis/culler.h>
 
 // What testbad tells after build; its faults go over these.
-enum { BAD_RUNS = 4, BAD_TESTS = 2, BAD_CAPTURES = 2, BAD_PICTURES = 2, BAD_SLOTS = 2, BAD_STEPS = 8 };
+enum { BAD_RUNS = 4, BAD_TESTS = 2, BAD_CAPTURES = 2, BAD_PICTURES = 2, BAD_CLIPPED = 2, BAD_SLOTS = 2, BAD_STEPS = 8 };
 
 typedef struct bad_step { // one step that was answered well, to be spoilt
     const cull_host *host;

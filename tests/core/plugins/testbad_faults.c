@@ -243,10 +243,97 @@ static void capture_composed_early(bad_step *s)
     (void)add_capture(s, 0);
 }
 
+static cull_clipped *add_clipped(bad_step *s)
+{
+    cull_clipped *c = &s->batch->clipped[s->batch->clipped_count++];
+    *c = (cull_clipped){.runs = &one_item, .box = s->zone->box, .planes = {{{1, 0, 0}, 0}}, .run_count = 1, .plane_count = 1};
+    return c;
+}
+
+static void clipped_too_many(bad_step *s) { s->batch->clipped_count = BAD_CLIPPED + 1; }
+static void clipped_endless(bad_step *s) { s->batch->clipped_count = UINT32_MAX; }
+static void clipped_plane_count(bad_step *s) { add_clipped(s)->plane_count = 5; }
+static void clipped_plane_nan(bad_step *s) { add_clipped(s)->planes[0].normal.y = NAN; }
+static void clipped_plane_infinite(bad_step *s) { add_clipped(s)->planes[0].offset = INFINITY; }
+static void clipped_box(bad_step *s) { add_clipped(s)->box.min.x = NAN; }
+static void clipped_null_runs(bad_step *s) { add_clipped(s)->runs = NULL; }
+static void clipped_endless_runs(bad_step *s) { add_clipped(s)->run_count = UINT32_MAX; }
+static void clipped_wild_run(bad_step *s)
+{
+    static const cull_run wild = {UINT32_MAX, 1};
+    add_clipped(s)->runs = &wild;
+}
+static void clipped_mover(bad_step *s)
+{
+    static cull_run mover;
+    mover = (cull_run){s->zone->item_count, 1};
+    add_clipped(s)->runs = &mover;
+}
+
+static void clipped_zone_twice(bad_step *s)
+{
+    static cull_run all[2];
+    all[0] = all[1] = (cull_run){0, s->zone->item_count};
+    cull_clipped *c = add_clipped(s);
+    c->runs = all;
+    c->run_count = 2;
+}
+
+// Instead of the first run: half of the items clipped.
+static void clip_half(bad_step *s)
+{
+    s->batch->run_count = 1;
+    s->batch->runs[0] = (cull_run){s->zone->item_count / 2, s->zone->item_count - s->zone->item_count / 2};
+}
+
+static void clipped_given(bad_step *s)
+{
+    clip_half(s);
+    (void)add_clipped(s);
+}
+
+static void clipped_item_twice(bad_step *s)
+{
+    static const cull_run twice[2] = {{0, 1}, {0, 1}};
+    clip_half(s);
+    cull_clipped *c = add_clipped(s);
+    c->runs = twice;
+    c->run_count = 2;
+}
+
+static void clipped_and_whole(bad_step *s) { (void)add_clipped(s); }
+
+static void clipped_then_whole(bad_step *s)
+{
+    if (s->visit->step == 0) {
+        clip_half(s);
+        (void)add_clipped(s);
+        s->progress = CULL_MORE;
+    } else s->batch->runs[s->batch->run_count++] = one_item;
+}
+
+static void clipped_taken_back(bad_step *s)
+{
+    if (s->visit->step == 0) {
+        clip_half(s);
+        (void)add_clipped(s);
+        s->progress = CULL_MORE;
+    } else s->batch->clipped_count = 0;
+}
+
+static void replaces_clipped(bad_step *s)
+{
+    s->batch->clipped = elsewhere();
+    s->batch->clipped_count = 1;
+}
+
+static void replaces_keep_clipped(bad_step *s) { s->batch->keep_clipped = elsewhere(); }
+
 // Behind the end of what was lent: only for a host whose lists end at guard pages.
 static void writes_past_runs(bad_step *s) { s->batch->runs[s->run_capacity] = one_item; }
 static void writes_past_tests(bad_step *s) { s->batch->tests[BAD_TESTS].tag = 1; }
 static void writes_past_captures(bad_step *s) { s->batch->captures[BAD_CAPTURES].slot = 1; }
+static void writes_past_clipped(bad_step *s) { s->batch->clipped[BAD_CLIPPED].run_count = 1; }
 static void writes_past_pictures(bad_step *s) { s->batch->pictures[BAD_PICTURES].slot = 1; }
 
 const bad_fault *bad_fault_find(const char *name)
@@ -265,7 +352,11 @@ const bad_fault *bad_fault_find(const char *name)
         FAULT(replaces_runs), FAULT(replaces_pictures), FAULT(replaces_tests), FAULT(replaces_captures), FAULT(replaces_keep_pictures), FAULT(replaces_keep_captures),
         FAULT(rewrites_drawn), FAULT(item_twice_over_steps), FAULT(zone_twice_over_steps), FAULT(logs_and_runs_wild), FAULT(tests_endless),
         FAULT(captures_endless), FAULT(pictures_endless), FAULT(picture_composed), FAULT(picture_beside), FAULT(capture_composed_early),
-        FAULT(writes_past_runs), FAULT(writes_past_tests), FAULT(writes_past_captures), FAULT(writes_past_pictures),
+        FAULT(writes_past_runs), FAULT(writes_past_tests), FAULT(writes_past_captures), FAULT(writes_past_pictures), FAULT(writes_past_clipped),
+        FAULT(clipped_given), FAULT(clipped_too_many), FAULT(clipped_endless), FAULT(clipped_plane_count), FAULT(clipped_plane_nan), FAULT(clipped_plane_infinite),
+        FAULT(clipped_box), FAULT(clipped_null_runs), FAULT(clipped_endless_runs), FAULT(clipped_wild_run), FAULT(clipped_mover), FAULT(clipped_zone_twice),
+        FAULT(clipped_item_twice), FAULT(clipped_and_whole), FAULT(clipped_then_whole), FAULT(clipped_taken_back), FAULT(replaces_clipped),
+        FAULT(replaces_keep_clipped),
     };
 #undef FAULT
     for (size_t i = 0; i < sizeof faults / sizeof *faults; ++i)

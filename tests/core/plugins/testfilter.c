@@ -58,6 +58,7 @@ static void choose_pictures(const cull_culler *c, const cull_visit *visit, cull_
     const int drop_captures = strcmp(c->values[PICTURES], "keep") != 0, drop_pictures = strcmp(c->values[PICTURES], "drop") == 0;
     for (uint32_t i = 0; drop_captures && i < visit->capture_count; ++i) batch->keep_captures[i] = 0;
     for (uint32_t i = 0; drop_pictures && i < visit->picture_count; ++i) batch->keep_pictures[i] = 0;
+    for (uint32_t i = 0; drop_pictures && i < visit->clipped_count; ++i) batch->keep_clipped[i] = 0;
 }
 
 static cull_progress filter(cull_query *q, const cull_visit *visit, cull_batch *batch)

@@ -1,11 +1,11 @@
 // The test culler `testpicture`: takes a picture of the first items once, and shows it instead of them while the eye
 // stays near the place that it was taken from. All other items, and these when the picture is lost, are drawn.
 // SPDX-License-Identifier: MIT
-#define OPTION_COUNT 4
+#define OPTION_COUNT 5
 #define QUERY_FIELDS                                      \
     float taken_from[3]; /* eye of the capture */         \
     uint32_t is_taken;                                    \
-    cull_run group;
+    cull_run group, clipped;
 #include "shell.h"
 
 #include <math.h>
@@ -50,6 +50,7 @@ static cull_result build(cull_culler *c, const cull_zone *zone, const cull_hiera
     out->max_captures = 1;
     out->max_pictures = 1;
     out->slot_count = 1;
+    out->max_clipped = 2;
     return c->values[3][0] == '1' ? lend_root(c) : CULL_OK;
 }
 
@@ -120,11 +121,24 @@ static float moved_since(const cull_query *q, const cull_visit *visit)
     return sqrtf(dot3(by, by));
 }
 
+// The last items on this side of a plane, and on that; all that are left over are a run.
+static uint32_t clip_last(cull_query *q, cull_batch *batch)
+{
+    const cull_zone *zone = q->culler->zone;
+    const uint32_t wanted = (uint32_t)strtoul(q->culler->values[4], NULL, 10), group = group_size(q->culler);
+    const uint32_t count = wanted < zone->item_count - group ? wanted : zone->item_count - group;
+    q->clipped = (cull_run){zone->item_count - count, count};
+    for (int side = 0; count && side < 2; ++side)
+        batch->clipped[batch->clipped_count++] = (cull_clipped){
+            .runs = &q->clipped, .box = zone->box, .planes = {{{side ? -1.0f : 1.0f, 0, 0}, 0}}, .run_count = 1, .plane_count = 1};
+    return count;
+}
+
 static cull_progress select_items(cull_query *q, const cull_visit *visit, cull_batch *batch)
 {
     const cull_zone *zone = q->culler->zone;
-    const uint32_t group = group_size(q->culler);
-    if (zone->item_count > group) batch->runs[batch->run_count++] = (cull_run){group, zone->item_count - group};
+    const uint32_t group = group_size(q->culler), whole = zone->item_count - group - clip_last(q, batch);
+    if (whole) batch->runs[batch->run_count++] = (cull_run){group, whole};
     if (group == 0) return CULL_DONE;
     q->group = (cull_run){0, group};
     const cull_box box = box_of_group(zone, group);
@@ -147,6 +161,7 @@ static const cull_option options[OPTION_COUNT] = {
     {"items", "0", NULL, "how many items stand in the picture, 0: half of them"},
     {"pixels", "256", NULL, "width and height of the picture"},
     {"hierarchy", "0", NULL, "1 lends one of a single node"},
+    {"clip", "0", NULL, "how many of the last items are given in two parts, clipped"},
 };
 static const cull_descriptor descriptor = {"testpicture", "1", "shows a picture instead of the first items", options, OPTION_COUNT, 0};
 static const cull_plugin plugin = {.descriptor = &descriptor,

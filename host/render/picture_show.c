@@ -1,0 +1,182 @@
+// Pictures shown: the parallelogram that a slot was taken through, from where the frame's eye is now.
+// SPDX-License-Identifier: MIT
+// Invariant: a picture without depth stands behind all that has depth, and in front of those shown after it; a slot that holds nothing
+// draws the items.
+#include "gl.h"
+
+#include <assert.h>
+#include <math.h>
+
+// ---- Drawing ----
+
+static void set_taken_uniforms(const picture_slot *s, const viewpoint *v, GLuint program)
+{
+    const double *const vectors[] = {s->corner, s->right, s->up}, *m = v->clip_from_eye;
+    double zw[2] = {m[14], m[15]};
+    for (int i = 0; i < 3; ++i) {
+        GLfloat out[3];
+        for (int k = 0; k < 3; ++k) out[k] = (GLfloat)(vectors[i][k] - (i == 0 ? s->eye[k] : 0));
+        glProgramUniform3fv(program, 4 + i, 1, out);
+    }
+    for (int row = 0; row < 2; ++row)
+        for (int k = 0; k < 3; ++k) zw[row] += m[4 * k + 2 + row] * (s->eye[k] - v->eye[k]);
+    glProgramUniform1f(program, 7, (GLfloat)s->near_fraction);
+    glProgramUniform2f(program, 8, (GLfloat)zw[0], (GLfloat)zw[1]);
+    glProgramUniform1f(program, 9, (GLfloat)PICTURE_DEPTH);
+}
+
+static void set_uniforms(const picture_slot *s, const viewpoint *v, GLuint program)
+{
+    GLfloat corner[3], right[3], up[3];
+    for (int k = 0; k < 3; ++k) {
+        corner[k] = (GLfloat)(s->corner[k] - v->eye[k]);
+        right[k] = (GLfloat)s->right[k];
+        up[k] = (GLfloat)s->up[k];
+    }
+    glProgramUniformMatrix4fv(program, AT_CLIP_FROM_EYE, 1, GL_FALSE, v->clip);
+    glProgramUniform3fv(program, 1, 1, corner);
+    glProgramUniform3fv(program, 2, 1, right);
+    glProgramUniform3fv(program, 3, 1, up);
+}
+
+typedef struct picture_pass {
+    uint32_t variant;
+    depth_range range;
+} picture_pass;
+
+static void draw(renderer *g, const picture_slot *s, const viewpoint *v, const picture_pass *p)
+{
+    const GLuint program = program_find(g, PROGRAM_PICTURE, p->variant);
+    if (!program) return;
+    if (!g->pictures.vertices) glCreateVertexArrays(1, &g->pictures.vertices);
+    state_program(g, program);
+    state_vertices(g, g->pictures.vertices);
+    state_pass_at(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, BACK_DRAWN, OFFSET_NONE}, p->range);
+    set_uniforms(s, v, program);
+    if (p->variant & VARIANT_KEEP_DEPTH) set_taken_uniforms(s, v, program);
+    glBindTextureUnit(0, s->colour);
+    if (p->variant & VARIANT_KEEP_DEPTH) glBindTextureUnit(1, s->depth);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    g->frame.draw_calls++;
+}
+
+void picture_draw(renderer *g, const picture_slot *s, const viewpoint *v)
+{
+    const uint32_t linear = g->pictures.options.filter == PICTURE_LINEAR ? VARIANT_LINEAR : 0;
+    const picture_pass p = {linear | (s->keep_depth ? VARIANT_KEEP_DEPTH : 0), s->keep_depth ? RANGE_OWN : RANGE_BEHIND};
+    draw(g, s, v, &p);
+}
+
+// An outline is known to half a texel, and its place to error_px: seen against nothing it may leave a gap. So a picture goes on for half a
+// pixel beyond its mask where nothing else stands: what errs by less leaves no pixel open that geometry covers, and covers none that is a
+// whole pixel from it; farther would trade gaps for spills. Drawn last and behind all, so it covers no other picture, and the depth
+// drawn by now spares the rest.
+void pictures_draw_fringes(renderer *g)
+{
+    frame_bind(g);
+    for (render_layout *l = g->layouts; l; l = l->next) {
+        for (uint32_t i = 0; i < l->shown_count; ++i)
+            if (l->shown[i]->filled) draw(g, l->shown[i], &g->frame.view, &(picture_pass){VARIANT_FRINGE, RANGE_FRINGE});
+        l->shown_count = 0;
+    }
+}
+
+// ---- Its area in the frame ----
+
+enum { CORNERS_MOST = 9 }; // a quad, and one more for each of five planes
+typedef struct clip_corner { double x, y, w; } clip_corner;
+
+static double inside(const clip_corner *c, int plane, double near_m)
+{
+    switch (plane) {
+    case 0: return c->w - near_m;
+    case 1: return c->w + c->x;
+    case 2: return c->w - c->x;
+    case 3: return c->w + c->y;
+    default: return c->w - c->y;
+    }
+}
+
+// Sutherland and Hodgman 1974.
+static int cut(const clip_corner *in, int count, int plane, double near_m, clip_corner *out)
+{
+    int kept = 0;
+    for (int i = 0; i < count; ++i) {
+        const clip_corner *a = &in[i], *b = &in[(i + 1) % count];
+        const double at_a = inside(a, plane, near_m), at_b = inside(b, plane, near_m);
+        if (at_a >= 0) out[kept++] = *a;
+        if ((at_a >= 0) == (at_b >= 0)) continue;
+        const double t = at_a / (at_a - at_b);
+        out[kept++] = (clip_corner){a->x + t * (b->x - a->x), a->y + t * (b->y - a->y), a->w + t * (b->w - a->w)};
+    }
+    return kept;
+}
+
+static clip_corner corner_of(const picture_slot *s, const viewpoint *v, int i)
+{
+    static const double places[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    const double *m = v->clip_from_eye;
+    double out[4];
+    for (int row = 0; row < 4; ++row) {
+        out[row] = m[12 + row];
+        for (int k = 0; k < 3; ++k) out[row] += m[4 * k + row] * (s->corner[k] + places[i][0] * s->right[k] + places[i][1] * s->up[k] - v->eye[k]);
+    }
+    return (clip_corner){out[0], out[1], out[3]};
+}
+
+static double area_px(const renderer *g, const picture_slot *s)
+{
+    clip_corner a[CORNERS_MOST], b[CORNERS_MOST];
+    int count = 4;
+    double twice = 0;
+    for (int i = 0; i < 4; ++i) a[i] = corner_of(s, &g->frame.view, i);
+    for (int plane = 0; plane < 5 && count; ++plane) {
+        count = cut(a, count, plane, g->frame.view.near_m, b);
+        for (int i = 0; i < count; ++i) a[i] = b[i];
+    }
+    for (int i = 0; i < count; ++i) {
+        const clip_corner *p = &a[i], *q = &a[(i + 1) % count];
+        twice += p->x / p->w * (q->y / q->w) - q->x / q->w * (p->y / p->w);
+    }
+    return fabs(twice) / 8 * g->frame.request.width_px * g->frame.request.height_px; // -1 .. 1 is the whole width
+}
+
+// ---- In a frame ----
+
+static void list_shown(render_layout *l, picture_slot *s)
+{
+    const uint32_t frame = l->g->frame.number;
+    s->used = frame;
+    if (s->listed == frame) return;
+    s->listed = frame;
+    l->shown[l->shown_count++] = s;
+}
+
+// Layers are counted, and owners found, on geometry.
+static int wants_geometry(const renderer *g)
+{
+    return g->frame.request.mode == RENDER_OVERDRAW || g->frame.request.mode == RENDER_IDS;
+}
+
+void renderer_show(renderer *g, render_layout *l, uint32_t zone, const cull_picture *picture)
+{
+    assert(zone < l->zone_count);
+    if (!g->frame.open) return;
+    picture_slot *s = slot_find(l, zone, picture->slot);
+    g->frame.may_repeat = 1;
+    if (!s || !slot_holds(g, s) || wants_geometry(g)) {
+        renderer_draw(g, l, zone, picture->runs, picture->run_count);
+        return;
+    }
+    const pixel_box cut = frame_cut(g, zone);
+    frame_flush(g);
+    frame_bind(g);
+    cut_begin(g, &cut);
+    picture_draw(g, s, &g->frame.view);
+    cut_end(g, &cut);
+    list_shown(l, s);
+    l->pictures.shown++;
+    l->pictures.pixels_shown += area_px(g, s);
+    translucent_note(g, &(layout_runs){l, zone, picture->runs, picture->run_count}); // what is translucent is in no picture
+    gl_check(g, NULL, "showing a picture");
+}
