@@ -5,11 +5,11 @@
 
 #include <string.h>
 
-enum { TESTS_AN_ENTRY = 3, FORGET_FRAMES = 16, PARTS_LEAST = 8 }; // FORGET_FRAMES: frames after which what joint tests taught counts half
+enum { TESTS_AN_ENTRY = 3, PARTS_LEAST = 8, SMALL_SIGHT = 3 }; // SMALL_SIGHT: below 256 pixels, which hide little
 
 static const float TEST_POLYGONS = 2;      // what a test costs, its state changes and the way back of its answer with it
 static const float DRAW_POLYGONS = 2;      // what an item costs beside its polygons: a change of state, as a test does
-static const float DELAY_POLYGONS = 0.5f; // what it costs to draw an item a step later
+static const float DELAY_POLYGONS = 2;     // what it costs to draw an item a step later: what it hides is not hidden in that step
 static const float INTERVAL_MOST = 24;     // frames
 
 // ---- Memory ----
@@ -66,9 +66,10 @@ void chc_close(const cull_host *host, occlusion_history *h)
 void chc_begin(occlusion_walk *w)
 {
     occlusion_chc *c = w->h->chc;
-    c->queue_count = c->test_count = c->first_open = c->member_count = c->open_count = c->due_count = c->due_asked = 0;
-    c->waited = c->rounds = c->has_picture = c->marked_count = c->fills = 0;
+    c->queue_count = c->test_count = c->first_open = c->member_count = c->open_count = 0;
+    c->waited = c->rounds = c->has_picture = c->marked_count = 0;
     c->is_first = w->h->seen_count == 0 || (w->visit->view->flags & CULL_VIEW_CUT);
+    c->due_count = c->due_asked = c->fills = 0;
 }
 
 // ---- What is known of an entry ----
@@ -78,15 +79,14 @@ static int is_mover(const occlusion_walk *w, tree_entry e)
     return e >= walk_mover_entry(w, 0);
 }
 
-// By what it is remembered: an item's place; a mover's id, which stands behind these. Not of a node.
-static uint32_t known_place(const occlusion_walk *w, tree_entry e)
+uint32_t chc_known_place(const occlusion_walk *w, tree_entry e)
 {
     return is_mover(w, e) ? w->visit->movers[e - walk_mover_entry(w, 0)].id : e - w->tree->node_count;
 }
 
 chc_past *chc_past_of(const occlusion_walk *w, tree_entry e)
 {
-    return &w->h->chc->past[tree_is_node(w->tree, e) ? e : w->tree->node_count + known_place(w, e)];
+    return &w->h->chc->past[tree_is_node(w->tree, e) ? e : w->tree->node_count + chc_known_place(w, e)];
 }
 
 static int is_known(const occlusion_walk *w, const chc_past *p)
@@ -154,13 +154,13 @@ int chc_is_doubtful(const occlusion_walk *w, tree_entry e)
 {
     const chc_past *p = chc_past_of(w, e);
     const float frames = (float)(w->h->serial - p->since), lost = model_loses(&w->h->chc->model, p->sight) * frames;
-    return (lost < 1 ? lost : 1) * polygons_of(w, known_place(w, e)) > DELAY_POLYGONS;
+    return p->sight <= SMALL_SIGHT && (lost < 1 ? lost : 1) * polygons_of(w, chc_known_place(w, e)) > DELAY_POLYGONS;
 }
 
 // Hidden by now it would be drawn until its time comes.
 int chc_is_fresh(const occlusion_walk *w, tree_entry e)
 {
-    const uint32_t place = known_place(w, e);
+    const uint32_t place = chc_known_place(w, e);
     const float frames = frames_best(w, place);
     return chc_past_of(w, e)->is_fresh && model_fresh(&w->h->chc->model) * polygons_of(w, place) * (frames < INTERVAL_MOST ? frames : INTERVAL_MOST) > TEST_POLYGONS;
 }
@@ -195,7 +195,7 @@ void chc_note_seen(occlusion_walk *w, tree_entry e, uint32_t pixels)
     heap_push(w->h->heap, &w->h->heap_count, (heap_entry){walk_key(w, &box), e});
     *p = (chc_past){.since = serial, .sight = (uint8_t)sight_bucket(pixels)};
     if (tree_is_node(w->tree, e)) return;
-    p->due = serial + interval_of(w, known_place(w, e));
+    p->due = serial + interval_of(w, chc_known_place(w, e));
     p->is_fresh = !was_held;
     if (!is_mover(w, e)) return;
     p->looked = serial;
@@ -212,44 +212,6 @@ int chc_holds_mover(const occlusion_walk *w, uint32_t mover)
 void chc_hold_mover(occlusion_walk *w, uint32_t mover)
 {
     chc_past_of(w, walk_mover_entry(w, mover))->looked = w->h->serial;
-}
-
-// ---- The visible queue ----
-
-void chc_due_add(occlusion_walk *w, tree_entry e)
-{
-    occlusion_chc *c = w->h->chc;
-    c->due[c->due_count++] = e;
-}
-
-static void ask_visible(occlusion_walk *w, tree_entry e)
-{
-    const cull_box box = walk_box(w, e);
-    walk_put_test(w, &box, CHC_VISIBLE | known_place(w, e));
-}
-
-uint32_t chc_ask_due(occlusion_walk *w, uint32_t most)
-{
-    occlusion_chc *c = w->h->chc;
-    uint32_t asked = 0;
-    for (; c->due_asked < c->due_count && asked < most && chc_has_room(w); asked++) ask_visible(w, c->due[c->due_asked++]);
-    return asked;
-}
-
-uint32_t chc_ask_early(occlusion_walk *w)
-{
-    occlusion_history *h = w->h;
-    const uint32_t first = h->drawn_count ? chc_random(h->serial, w->visit->step) % h->drawn_count : 0;
-    for (uint32_t i = 0; i < h->drawn_count && chc_has_room(w); i++) {
-        const uint32_t place = h->drawn_list[(first + i) % h->drawn_count];
-        chc_past *p = &h->chc->past[tree_entry_of_item(w->tree, place)];
-        if ((int32_t)(p->due - h->serial) <= 0) continue; // asked, or near
-        p->due = h->serial;
-        ask_visible(w, tree_entry_of_item(w->tree, place));
-        h->counters.early++;
-        return 1;
-    }
-    return 0;
 }
 
 // ---- Answers ----
@@ -391,6 +353,7 @@ void chc_hear(occlusion_walk *w)
     for (uint32_t i = 0; i < visit->answer_count; i++) {
         const cull_answer *a = &visit->answers[i];
         if (a->tag & CHC_VISIBLE) count_visible(w, a);
+        else if (a->tag & CHC_PAIR) chc_hear_pair(w, a);
         else if (a->age == 0 && visit->step && a->tag < c->test_count) {
             c->tests[a->tag].is_heard = 1;
             c->tests[a->tag].pixels = a->pixels;

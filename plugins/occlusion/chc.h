@@ -7,10 +7,11 @@
 #include "chc_picture.h"
 #include "walk.h"
 
-enum { CHC_FAILURES_MOST = 5 };
+enum { CHC_FAILURES_MOST = 5, CHC_PAIRS_MOST = 64 };
 
 // Tags: with this bit an item's place or a mover's id, of what is drawn for seen; else a place in occlusion_chc.tests.
 #define CHC_VISIBLE 0x40000000u
+#define CHC_PAIR 0x20000000u    // a place in occlusion_chc.pairs
 #define CHC_ALONE (UINT64_C(1) << 63) // a joint test of this frame did not hide it
 
 // Of a node, an item or, by its id, a mover. looked is this frame and since too: its parent came into sight, nothing is known of it alone.
@@ -34,6 +35,9 @@ typedef struct chc_test {
     uint8_t growth, hides, is_open, is_heard, is_split, is_known, spare[2]; // is_split: alone after a joint test; is_known: they stood so before
 } chc_test;
 
+// Two tests of a frame that one box round both may do for in the next.
+typedef struct chc_pair { uint32_t frame, leader, other, is_hidden; } chc_pair; // frame: the host's; leader, other: first members
+
 typedef struct occlusion_chc {
     chc_past *past;     // by node, then by item, then by mover's id; see chc_past_of
     uint32_t *seen_now; // by entry: serial of the frame that answered "seen"
@@ -44,6 +48,8 @@ typedef struct occlusion_chc {
     chc_model model;
     chc_picture picture; // of the first marked_count items drawn in this frame
     uint32_t queue_count, test_count, first_open, member_count, member_most, open_count, due_count, due_asked, waited, rounds, has_picture, marked_count;
+    chc_pair pairs[CHC_PAIRS_MOST]; // the last that were tried
+    uint32_t pair_next;
     uint32_t fills; // steps since an answer came, without work that the frame needs
     uint32_t batches, is_first; // batches: tests are saved up; is_first: nothing to go by
 } occlusion_chc;
@@ -60,8 +66,6 @@ void chc_hear(occlusion_walk *w);
 void chc_queue_add(occlusion_walk *w, tree_entry e, uint64_t how); // how: CHC_ALONE or 0
 // Asks for the queue's tests, neighbours likely to be hidden in one; at most `most` tests, of what there is room for.
 void chc_ask(occlusion_walk *w, uint32_t most);
-// An item or mover drawn for seen is tested at the end of this frame or while answers are out.
-void chc_due_add(occlusion_walk *w, tree_entry e);
 // Of what was seen before: it is to be tested again; it is lost so likely that the test comes before the drawing.
 int chc_is_due(const occlusion_walk *w, tree_entry e);
 int chc_is_doubtful(const occlusion_walk *w, tree_entry e);
@@ -71,12 +75,11 @@ int chc_is_fresh(const occlusion_walk *w, tree_entry e);
 int chc_holds_mover(const occlusion_walk *w, uint32_t mover);
 void chc_hold_mover(occlusion_walk *w, uint32_t mover);
 chc_past *chc_past_of(const occlusion_walk *w, tree_entry e);
-uint32_t chc_ask_due(occlusion_walk *w, uint32_t most); // how many
-// One more, whose time has not come: there is no other work while answers are out. 0: no such item.
-uint32_t chc_ask_early(occlusion_walk *w);
 // What was asked and is not answered is given up: each member is as good as seen.
 void chc_give_up(occlusion_walk *w);
 void chc_note_seen(occlusion_walk *w, tree_entry e, uint32_t pixels);
+// By what it is remembered: an item's place; a mover's id, which stands behind these. Not of a node.
+uint32_t chc_known_place(const occlusion_walk *w, tree_entry e);
 // Of an entry by itself, to be hidden.
 float chc_chance(const occlusion_walk *w, tree_entry e);
 static inline int chc_has_room(const occlusion_walk *w)
@@ -86,5 +89,14 @@ static inline int chc_has_room(const occlusion_walk *w)
 
 // Its parent came into sight: nothing is known of the entry alone, unless it was tested last frame.
 void chc_pull_down(occlusion_walk *w, tree_entry e);
+
+// ---- Work that nobody waits for (chc_spare.c) ----
+
+// An item or mover drawn for seen is tested at the end of this frame or while answers are out.
+void chc_due_add(occlusion_walk *w, tree_entry e);
+uint32_t chc_ask_due(occlusion_walk *w, uint32_t most); // how many
+int chc_fill(occlusion_walk *w); // some of it, for a step that has nothing else. 0: nothing is left
+void chc_hear_pair(occlusion_walk *w, const cull_answer *a);
+void chc_join_pairs(occlusion_walk *w); // the end of a frame: those found hidden stand together in the next
 
 #endif

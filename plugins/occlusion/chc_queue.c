@@ -18,8 +18,11 @@ static uint32_t place_of_entry(const occlusion_walk *w, tree_entry e)
 static tree_entry leader_of(const occlusion_walk *w, tree_entry e)
 {
     if (e >= walk_mover_entry(w, 0)) return e; // a mate's place may be another's in the next frame
-    const chc_past *p = &w->h->chc->past[e];
-    return p->mate && p->looked && p->looked == w->h->serial - 1 ? p->mate - 1 : e;
+    const chc_past *past = w->h->chc->past, *p = &past[e];
+    if (!p->mate || !p->looked || p->looked != w->h->serial - 1) return e;
+    const tree_entry leader = p->mate - 1;
+    if (leader >= walk_mover_entry(w, 0) || !past[leader].mate || past[leader].looked != p->looked) return leader;
+    return past[leader].mate - 1; // joined with others since
 }
 
 void chc_queue_add(occlusion_walk *w, tree_entry e, uint64_t how)

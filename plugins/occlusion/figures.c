@@ -7,7 +7,7 @@ void figures_begin(const occlusion_tree *tree, occlusion_figures *out)
     static const char *const names[FIGURE_COUNT] = {
         "nodes", "depth", "units", "frames", "tests", "tests_waited_for", "tests_wasted", "tests_unanswered", "answer_age_frames", "units_off_a_frame",
         "frames_at_rest",
-        "tests_joint", "tests_joint_hidden", "tests_early", "turns_a_frame", "steps_idle",
+        "tests_joint", "tests_joint_hidden", "tests_early", "turns_a_frame",
         "rectangles_tested", "items_rastered", "polygons_rastered",
     };
     *out = (occlusion_figures){.lent = {out->list, FIGURE_COUNT, 0}};
@@ -33,7 +33,6 @@ void figures_add(occlusion_figures *f, const occlusion_counters *c)
     list[FIGURE_RECTANGLES].value += (double)c->hiz.rectangles;
     list[FIGURE_HIZ_ITEMS].value += (double)c->hiz.items;
     list[FIGURE_HIZ_POLYGONS].value += (double)c->hiz.polygons;
-    list[FIGURE_IDLES].value += (double)c->idles;
     f->turns += (double)c->turns;
     f->late_answers += (double)c->late_answers;
     f->age_sum += (double)c->age_sum;

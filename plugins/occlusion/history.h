@@ -18,8 +18,7 @@ typedef struct occlusion_counters {
     uint64_t off_units;  // units drawn without tests, summed over frames
     uint64_t rests;      // frames in which nothing was tested before it was drawn
     uint64_t joint, joint_hits; // of the tests, several entries under one; answered "hidden"
-    uint64_t early;             // of the tests, only to have work while answers are out
-    uint64_t idles;             // steps without work, while answers were out
+    uint64_t early;             // of the tests, for the next frame, asked as there was no other work while answers were out
     uint64_t turns;             // from drawing to testing, and back
     hiz_counters hiz;
 } occlusion_counters;

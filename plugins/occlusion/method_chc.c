@@ -9,9 +9,9 @@
 #include "method.h"
 #include "rest.h"
 
-enum { QUEUE_MOST = 256, DIRECT_ITEMS = 64, ROUNDS_MOST = 8, FILL_SHARE = 4, FILLS_MOST = 16 };
+enum { QUEUE_MOST = 256, DIRECT_ITEMS = 64, ROUNDS_MOST = 8 };
 // QUEUE_MOST: tests saved up. DIRECT_ITEMS: a node come into sight with no more is tested item by item. ROUNDS_MOST: after which
-// nothing is guessed any more. FILLS_MOST: steps in a row with nothing but tests that nobody waits for; then it waits
+// nothing is guessed any more
 
 typedef struct chc_walk {
     occlusion_walk *w;
@@ -188,7 +188,6 @@ static void traverse(chc_walk *t)
 
 // With nothing to go by and from outside of the zone, what hides it may stand in others, which nobody has drawn yet: it is tested
 // whole before anything.
-
 static void begin(chc_walk *t)
 {
     occlusion_walk *w = t->w;
@@ -246,23 +245,30 @@ static uint32_t steps_most(uint32_t entries)
     return entries < CULL_MAX_STEPS / 4 - 64 ? entries * 4 + 64 : CULL_MAX_STEPS;
 }
 
-// What was seen and is due is tested when the frame is complete, or while answers are out: these tests nobody waits for.
+static int is_open(const chc_walk *t)
+{
+    return t->w->h->heap_count || t->c->queue_count || t->c->open_count;
+}
+
+// What was seen and is due is tested now at the latest: these answers nobody waits for.
+static cull_progress end(chc_walk *t)
+{
+    occlusion_walk *w = t->w;
+    if (!(w->visit->view->flags & CULL_VIEW_CUT)) chc_ask_due(w, UINT32_MAX);
+    chc_join_pairs(w);
+    rest_count_drawn(w);
+    history_turn(w->h);
+    return CULL_DONE;
+}
+
+// While answers are out, what is of use to the next frame is done. With nothing left it waits.
 static cull_progress go_on(chc_walk *t)
 {
     occlusion_walk *w = t->w;
     occlusion_chc *c = t->c;
-    const uint32_t due = c->due_count - c->due_asked;
-    if (!w->h->heap_count && !c->queue_count && !c->open_count) {
-        if (!(w->visit->view->flags & CULL_VIEW_CUT)) chc_ask_due(w, due);
-        rest_count_drawn(w);
-        history_turn(w->h);
-        return CULL_DONE;
-    }
+    if (!is_open(t)) return end(t);
     if (w->h->heap_count || c->queue_count || w->batch->test_count || w->batch->run_count > w->h->first_run) return CULL_MORE;
-    if (c->fills < FILLS_MOST && (chc_ask_due(w, due / FILL_SHARE + 1) || chc_ask_early(w))) {
-        c->fills++;
-        return CULL_MORE;
-    }
+    if (chc_fill(w)) return CULL_MORE;
     c->waited = 1;
     w->h->counters.waited += c->open_count;
     return CULL_WAIT;

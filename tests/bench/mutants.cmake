@@ -106,7 +106,7 @@ if(TARGET plugin_occlusion)
   portcullis_mutant(occlusion chc-skips-a-child method_chc.c
     "c < n->first_child + n->child_count; c++" "c < n->first_child + n->child_count; c += c % 4 == 1 ? 2u : 1u")
   portcullis_mutant(occlusion chc-ends-before-the-answers method_chc.c
-    "!c->queue_count && !c->open_count) {" "!c->queue_count) {")
+    "t->c->queue_count || t->c->open_count;" "t->c->queue_count;")
   portcullis_mutant(occlusion chc-drops-what-its-guess-covers method_chc.c
     "== COVER_FULL) chc_queue_add(w, e, 0);" "== COVER_FULL) return;")
   portcullis_mutant(occlusion chc-tests-the-first-of-several chc_queue.c

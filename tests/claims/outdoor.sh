@@ -144,11 +144,11 @@ cheap() {
   [ -n "${PORTCULLIS_LONG:-}" ] || return
   "$portcullis" generate terrain --size 1024 -o "$work/terrain.obj" || exit 1
   awk 'BEGIN { for (i = 0; i < 150; i++) printf "%f 220 %f 0.66 -0.717 %f 0 1 0 60 1.7777777777777777 0.1 4000\n", 300 + 2 * i, 400 + i, 0.2 + 0.2 * sin(i / 20) }' >"$work/above.views"
-  repeat=5 run 'terrain from above' "$work/terrain.obj" "$work/above.views" octree twophase
-  costs twophase 1.03
+  repeat=5 run 'terrain from above' "$work/terrain.obj" "$work/above.views" octree twophase chc
+  costs twophase 1.03; costs chc 1.03
   "$portcullis" generate swarm --size 10000 -o "$work/swarm.boxes" || exit 1
-  repeat=5 run 'swarm auto:100' "$work/swarm.boxes" auto:100 octree twophase
-  costs twophase 1.03
+  repeat=5 run 'swarm auto:100' "$work/swarm.boxes" auto:100 octree twophase chc
+  costs twophase 1.03; costs chc 1.03
   held "$name twophase: tests a frame" "$(figure twophase queries)" '<=' 20
 }
 

@@ -9,7 +9,7 @@ portcullis=$1
 export PORTCULLIS_PLUGIN_PATH="$2"
 boxes=2000 cells=1024 count=8 size=320x180
 [ -z "${PORTCULLIS_LONG:-}" ] || { boxes=10000 cells=4096 count=100 size=640x360; }
-cullers='--culler octree[kind=oct] --culler octree[kind=quad] --culler octree+occlusion --culler octree+occlusion[method=wait]'
+cullers='--culler octree[kind=oct] --culler octree[kind=quad] --culler octree+occlusion --culler octree+occlusion[method=wait] --culler octree+occlusion[method=chc] --culler octree+occlusion[method=hiz]'
 
 "$portcullis" generate city --size "$boxes" -o "$work/city.boxes" || exit 1
 "$portcullis" generate terrain --size "$cells" -o "$work/terrain.obj" || exit 1
