@@ -85,6 +85,20 @@ walk_place walk_place_of(const occlusion_walk *w, const cull_box *box)
     return best;
 }
 
+// Half the work of walk_place_of, for what has no parts.
+static int touches(const occlusion_walk *w, const cull_box *box)
+{
+    const cull_visit *visit = w->visit;
+    if (w->takes_candidates) return 1;
+    for (uint32_t v = 0; v < visit->volume_count; v++) {
+        const cull_volume *volume = &visit->volumes[v];
+        uint32_t k = 0;
+        while (k < volume->plane_count && !(cull_plane_height(volume->planes[k], cull_box_corner(*box, volume->planes[k].normal)) < 0)) k++;
+        if (k == volume->plane_count) return 1;
+    }
+    return 0;
+}
+
 static float beyond(float low, float high, float eye)
 {
     return eye < low ? low - eye : eye > high ? eye - high : 0;
@@ -159,7 +173,7 @@ int walk_go(const occlusion_walk *w, walk_cursor *c, tree_way way)
 
 int walk_wants(const occlusion_walk *w, uint32_t place, walk_place node_at)
 {
-    return !walk_is_masked(w, place) && (node_at == WALK_IN || walk_place_of(w, &w->tree->boxes[place]) != WALK_OUT);
+    return !walk_is_masked(w, place) && (node_at == WALK_IN || touches(w, &w->tree->boxes[place]));
 }
 
 // Items of a unit that is off enter no list: nothing asks about them afterwards.

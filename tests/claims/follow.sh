@@ -15,6 +15,15 @@ fit() { # FILE: "there seen views a"
   }' "$1"
 }
 
+# The file that is judged: in the long tier by time; in the short one, which a busy machine runs too, by the third column: what is counted, not timed.
+measured=time
+[ -n "${PORTCULLIS_LONG:-}" ] || measured="the number of $third"
+judged() { # FILE
+  [ -z "${PORTCULLIS_LONG:-}" ] || { printf '%s' "$1"; return; }
+  awk '{ $5 = $3 + 1; print }' "$1" >"$1.counts"
+  printf '%s' "$1.counts"
+}
+
 show() { # FILE: a line a size: means, and of views that see 1, up to $times, $times^2, ... of them the mean time
   awk -v what="$what" -v third="$third" -v times="$times" '{
     n[$1]++; seen[$1] += $2; crossed[$1] += $3; ns[$1] += $5

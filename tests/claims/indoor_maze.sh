@@ -26,11 +26,11 @@ for chain in frustum+portal bsp+portal; do
   done
   printf '# maze, doors open, %s\n' "$chain"
   show "$views"
-  set -- $(fit "$views")
-  printf '  time grows with rooms seen to the power %s, with rooms there are to the power %s; %s views\n' "$2" "$1" "$3"
+  set -- $(fit "$(judged "$views")")
+  printf '  %s grows with rooms seen to the power %s, with rooms there are to the power %s; %s views\n' "$measured" "$2" "$1" "$3"
   true_that "$chain: exponent of the rooms there are" "$1 < $most_there"
   true_that "$chain: exponent of the rooms seen" "$2 > $least_seen && $2 < $most_seen"
-  told="$told${told:+;}$chain: time grows as the rooms seen to the power $2, as the rooms there are to the power $1"
+  told="$told${told:+;}$chain: $measured grows as the rooms seen to the power $2, as the rooms there are to the power $1"
   [ "$chain" != frustum+portal ] || fits="$*"
 done
 [ -z "$plot" ] || draw "$work/views.frustum+portal" "Generated mazes, doors open, frustum+portal" "$fits" "$told"

@@ -36,12 +36,12 @@ for size in $sizes; do
 done
 echo '# city, octree'
 show "$views"
-set -- $(awk '(NR - 1) % 9 < 3' "$views" >"$work/near"; fit "$work/near")
+set -- $(awk '(NR - 1) % 9 < 3' "$views" >"$work/near"; fit "$(judged "$work/near")")
 there=$1
 # One size: what stands for it is any two numbers, as the fit needs to tell them apart.
-set -- $(awk -v all="${sizes##* }" '$1 == all && $2 >= 64 { print 1 + NR % 2, $2, $3, $4, $5 }' "$views" >"$work/largest"; fit "$work/largest")
+set -- $(awk -v all="${sizes##* }" '$1 == all && $2 >= 64 { print 1 + NR % 2, $2, $3, $4, $5 }' "$views" >"$work/largest"; fit "$(judged "$work/largest")")
 seen=$2
-told="time grows as the boxes there are to the power $there where the same boxes are seen, and in the largest city as the boxes seen to the power $seen"
+told="$measured grows as the boxes there are to the power $there where the same boxes are seen, and in the largest city as the boxes seen to the power $seen"
 echo "  $told"
 true_that "exponent of the boxes there are" "$there < $most_there"
 true_that "exponent of the boxes seen" "$seen > $least_seen && $seen < $most_seen"
