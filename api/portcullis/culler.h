@@ -176,7 +176,7 @@ typedef struct cull_visit {
     void *scratch;              // cull_built.scratch_size bytes, 64-byte aligned, of undefined content
     uint32_t volume_count, candidate_count, picture_count, capture_count, mover_count, answer_count, clipped_count;
     uint32_t step;              // 0 in the first step of a frame
-    uint32_t reserved;
+    uint32_t may_step;          // 1: it is the last of select and filters, which may give tests and return CULL_MORE or CULL_WAIT
 } cull_visit;
 
 // ---- What one step gives: host memory, sized once from cull_built ----
@@ -209,7 +209,8 @@ struct cull_picture {
     cull_box box;
     uint32_t run_count, slot;
     float error_px; // the culler's bound on how far a pixel may sit from its place
-    uint32_t reserved;
+    uint32_t place_is_said;      // 0: it is shown as the parallelogram that it was taken through
+    cull_vec3 corner, right, up; // else as this one
 };
 
 // "Draw these items clipped to what lies inside all planes": geometry that meets a picture at a seam. An item may stand in

@@ -177,6 +177,7 @@ static const char *picture_fault(const viewer *v, uint32_t slot_count, const cul
     if (!is_filled(v, p->slot)) return "a picture of a slot that is empty";
     uint64_t sum;
     if (!(p->error_px >= 0) || !isfinite(p->error_px) || !box_is_sound(&p->box)) return "a picture whose numbers are not finite";
+    if (p->place_is_said && !(point_is_finite(p->corner) && point_is_finite(p->right) && point_is_finite(p->up))) return "a picture whose numbers are not finite";
     return lent_runs_fault(v, p->runs, p->run_count, &sum);
 }
 

@@ -121,6 +121,7 @@ static cull_progress call(viewer *v, const viewer_frame *f, uint32_t stage, cull
 {
     const chain_stage *s = &v->chain->stages[stage];
     f->stats->steps++;
+    v->visit.may_step = stage == v->last;
     return s->role == ROLE_SELECT ? s->plugin->select(v->stages[stage].query, &v->visit, b)
                                   : s->plugin->filter(v->stages[stage].query, &v->visit, b);
 }
@@ -408,7 +409,7 @@ void viewer_test(viewer *v, const viewer_frame *f)
 }
 
 // The list is full and there are more: those of earlier frames go, then the oldest. Answers come oldest first, so the
-// newest max_tests of them hold all of the step that waits.
+// newest max_tests of them hold all of the step that waits; what it asked in earlier steps of the frame may go unanswered: seen.
 static uint32_t make_room(cull_answer *answers, uint32_t count, uint32_t keep_most)
 {
     uint32_t facts = 0;

@@ -41,7 +41,7 @@ static int parallelogram_view(picture_slot *s, viewpoint *v)
     return 1;
 }
 
-static void set3(double out[3], cull_vec3 v, const double offset[3])
+void picture_set3(double out[3], cull_vec3 v, const double offset[3])
 {
     const float from[3] = {v.x, v.y, v.z};
     for (int k = 0; k < 3; ++k) out[k] = (double)from[k] + offset[k];
@@ -92,16 +92,24 @@ static int takes_pictures(const renderer *g)
     return g->frame.open && g->frame.request.mode != RENDER_OVERDRAW && g->frame.request.mode != RENDER_IDS;
 }
 
+void picture_as_taken(picture_slot *s)
+{
+    memcpy(s->shown[0], s->corner, sizeof s->corner);
+    memcpy(s->shown[1], s->right, sizeof s->right);
+    memcpy(s->shown[2], s->up, sizeof s->up);
+}
+
 static void set_place(const renderer *g, uint32_t zone, const cull_capture *c, picture_slot *s)
 {
     const double nowhere[3] = {0, 0, 0};
     double offset[3];
     layout_zone_offset(g, zone, offset);
-    set3(s->corner, c->corner, offset);
-    set3(s->right, c->right, nowhere);
-    set3(s->up, c->up, nowhere);
-    if (c->eye_is_said) set3(s->eye, c->eye, offset);
+    picture_set3(s->corner, c->corner, offset);
+    picture_set3(s->right, c->right, nowhere);
+    picture_set3(s->up, c->up, nowhere);
+    if (c->eye_is_said) picture_set3(s->eye, c->eye, offset);
     else memcpy(s->eye, g->frame.view.eye, sizeof s->eye);
+    picture_as_taken(s);
     s->mode = g->frame.request.mode;
     s->faces = g->frame.request.faces;
     s->used = g->frame.number;
@@ -116,7 +124,9 @@ void renderer_capture(renderer *g, render_layout *l, uint32_t zone, const cull_c
     s->filled = 0;
     for (uint32_t i = 0; i < capture->slot_count; ++i) { // what it is composed of is not what it takes the place of
         picture_slot *part = slot_find(l, zone, capture->slots[i]);
-        if (part && part != s) part->used = g->frame.number;
+        if (!part || part == s) continue;
+        part->used = g->frame.number;
+        picture_as_taken(part);
     }
     viewpoint v = g->frame.view;
     if (!slot_prepare(g, l, s, capture)) return;

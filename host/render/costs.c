@@ -13,6 +13,7 @@ enum {
     GRID = 100,    // cells a side of the fine mesh
     FINE_INDICES = GRID * GRID * 6,
     VERTICES = (GRID + 1) * (GRID + 1),
+    SMALLS = 8,     // small slots, in turns: in a frame each picture has textures of its own
     PICTURES = 256, // small ones timed together
     CAPTURES = 64,
     TIMES = 5, // the least of so many, after one that compiles: other work only adds to CPU time
@@ -25,7 +26,7 @@ typedef struct bench_bed {
     viewpoint view;
     vertex_buffers buffers;
     GLuint elements, vertices;
-    picture_slot whole, deep, small; // slots of no layout
+    picture_slot whole, deep, smalls[SMALLS]; // slots of no layout
 } bench_bed;
 
 static double cpu_ns(void)
@@ -146,7 +147,7 @@ static void run_deep_picture(bench_bed *b)
 static void run_small_pictures(bench_bed *b)
 {
     begin(b);
-    for (int i = 0; i < PICTURES; ++i) picture_draw(b->g, &b->small, &b->view);
+    for (int i = 0; i < PICTURES; ++i) picture_draw(b->g, &b->smalls[i % SMALLS], &b->view);
 }
 
 static void capture(bench_bed *b, const picture_slot *s)
@@ -158,7 +159,7 @@ static void capture(bench_bed *b, const picture_slot *s)
 
 static void run_small_captures(bench_bed *b)
 {
-    for (int i = 0; i < CAPTURES; ++i) capture(b, &b->small);
+    for (int i = 0; i < CAPTURES; ++i) capture(b, &b->smalls[i % SMALLS]);
 }
 
 static void run_capture(bench_bed *b) { capture(b, &b->whole); }
@@ -208,6 +209,7 @@ static int make_slot(bench_bed *b, picture_slot *s, uint32_t side_px, uint32_t k
     s->corner[0] = s->corner[1] = -far;
     s->corner[2] = -DISTANCE_M;
     s->right[0] = s->up[1] = 2 * far;
+    picture_as_taken(s);
     s->near_fraction = b->view.near_m / DISTANCE_M;
     s->filled = 1;
     return slot_textures(b->g, s, &(cull_capture){.width_px = side_px, .height_px = side_px, .keep_depth = keep_depth});
@@ -224,7 +226,8 @@ static result open_bed(bench_bed *b, report *r)
     for (int k = 0; k < 3; ++k) b->view.eye[k] = 0; // the mesh stands about the scene's origin
     viewpoint_finish(&b->view);
     if (make_mesh(b) != RESULT_OK) return report_no_memory(r, NULL);
-    const int made = make_slot(b, &b->whole, SIDE_PX, 0) && make_slot(b, &b->deep, SIDE_PX, 1) && make_slot(b, &b->small, 4, 0);
+    int made = make_slot(b, &b->whole, SIDE_PX, 0) && make_slot(b, &b->deep, SIDE_PX, 1);
+    for (int i = 0; made && i < SMALLS; ++i) made = make_slot(b, &b->smalls[i], 4, 0);
     return made ? gl_check(b->g, r, "measuring what drawing takes") : RESULT_NO_GL;
 }
 
@@ -234,7 +237,7 @@ static void close_bed(bench_bed *b)
     const GLuint buffers[] = {v->positions, v->words, v->triangles, v->texcoords, v->normals, v->others, v->movers, b->elements};
     slot_empty(b->g, &b->whole);
     slot_empty(b->g, &b->deep);
-    slot_empty(b->g, &b->small);
+    for (int i = 0; i < SMALLS; ++i) slot_empty(b->g, &b->smalls[i]);
     glDeleteVertexArrays(1, &b->vertices);
     glDeleteBuffers((GLsizei)(sizeof buffers / sizeof *buffers), buffers);
     state_forget(b->g); // their names may come again

@@ -373,7 +373,8 @@ struct picture_slot {
     uint32_t used;   // number of the frame that last took or showed it
     uint32_t listed; // number of the frame whose list it stands in
     uint64_t bytes;  // of its textures
-    double corner[3], right[3], up[3], eye[3]; // relative to the scene's origin
+    double corner[3], right[3], up[3], eye[3]; // that it was taken through and from, relative to the scene's origin
+    double shown[3][3];                        // corner, right and up that it is shown as
     double near_fraction; // distance of depth 1, in units of the parallelogram's
 };
 
@@ -393,6 +394,8 @@ void capture_begin(renderer *g, const picture_slot *s); // bound and cleared
 int slot_prepare(renderer *g, render_layout *l, picture_slot *s, const cull_capture *c);
 void slot_empty(renderer *g, picture_slot *s); // and its memory given back
 void slot_dilate(renderer *g, const picture_slot *s); // colours go on for a texel outside the mask
+void picture_as_taken(picture_slot *s); // is how it is shown from now on
+void picture_set3(double out[3], cull_vec3 v, const double offset[3]);
 void picture_draw(renderer *g, const picture_slot *s, const viewpoint *v); // into what is bound
 void pictures_draw_fringes(renderer *g); // of those shown in the frame, where nothing else stands
 

@@ -1,4 +1,4 @@
-// Pictures shown: the parallelogram that a slot was taken through, from where the frame's eye is now.
+// Pictures shown: the parallelogram that a slot was taken through, or one that is said, from where the frame's eye is now.
 // SPDX-License-Identifier: MIT
 // Invariant: a picture without depth stands behind all that has depth, and in front of those shown after it; a slot that holds nothing
 // draws the items.
@@ -29,9 +29,9 @@ static void set_uniforms(const picture_slot *s, const viewpoint *v, GLuint progr
 {
     GLfloat corner[3], right[3], up[3];
     for (int k = 0; k < 3; ++k) {
-        corner[k] = (GLfloat)(s->corner[k] - v->eye[k]);
-        right[k] = (GLfloat)s->right[k];
-        up[k] = (GLfloat)s->up[k];
+        corner[k] = (GLfloat)(s->shown[0][k] - v->eye[k]);
+        right[k] = (GLfloat)s->shown[1][k];
+        up[k] = (GLfloat)s->shown[2][k];
     }
     glProgramUniformMatrix4fv(program, AT_CLIP_FROM_EYE, 1, GL_FALSE, v->clip);
     glProgramUniform3fv(program, 1, 1, corner);
@@ -119,7 +119,7 @@ static clip_corner corner_of(const picture_slot *s, const viewpoint *v, int i)
     double out[4];
     for (int row = 0; row < 4; ++row) {
         out[row] = m[12 + row];
-        for (int k = 0; k < 3; ++k) out[row] += m[4 * k + row] * (s->corner[k] + places[i][0] * s->right[k] + places[i][1] * s->up[k] - v->eye[k]);
+        for (int k = 0; k < 3; ++k) out[row] += m[4 * k + row] * (s->shown[0][k] + places[i][0] * s->shown[1][k] + places[i][1] * s->shown[2][k] - v->eye[k]);
     }
     return (clip_corner){out[0], out[1], out[3]};
 }
@@ -152,6 +152,18 @@ static void list_shown(render_layout *l, picture_slot *s)
     l->shown[l->shown_count++] = s;
 }
 
+static void place(const renderer *g, uint32_t zone, const cull_picture *p, picture_slot *s)
+{
+    static const double nowhere[3] = {0, 0, 0};
+    double offset[3];
+    picture_as_taken(s);
+    if (!p->place_is_said) return;
+    layout_zone_offset(g, zone, offset);
+    picture_set3(s->shown[0], p->corner, offset);
+    picture_set3(s->shown[1], p->right, nowhere);
+    picture_set3(s->shown[2], p->up, nowhere);
+}
+
 // Layers are counted, and owners found, on geometry.
 static int wants_geometry(const renderer *g)
 {
@@ -171,6 +183,7 @@ void renderer_show(renderer *g, render_layout *l, uint32_t zone, const cull_pict
     const pixel_box cut = frame_cut(g, zone);
     frame_flush(g);
     frame_bind(g);
+    place(g, zone, picture, s);
     cut_begin(g, &cut);
     picture_draw(g, s, &g->frame.view);
     cut_end(g, &cut);

@@ -7,16 +7,17 @@
 #include <string.h>
 
 #define HYSTERESIS 1.3       // a choice that stands is kept while it costs no more than this times the other
+#define RING_WORTH 0.05      // of what all costs: less is not worth a square of another size
 #define FRAMES_MOST 1000.0   // that a picture is foretold to last: until then something else happens
 #define SEAM_SINE 0.25       // surfaces that cross a seam are guarded down to 14 degrees from the line of sight
 #define SINE_LEAST 0.2       // between step and line of sight: the step turns before less comes to count
 #define FLOATS_PER_TEXEL (72.0 / 16777216) // of the largest coordinate, see QUAD_TOO_FINE
-#define COVERED 0.5          // of a node's rectangle that it covers and nothing nearer hides, about
+#define COVERED 0.5          // of a node's rectangle that geometry covers and nothing nearer hides, about
 
 int cut_open(const cull_host *host, const cells *c, const lists *l, cut *out)
 {
     const uint32_t nodes = l->node_count, most_rings = (c->ground.columns > c->ground.rows ? c->ground.columns : c->ground.rows) + 2;
-    const size_t numbers = most_rings * sizeof(double) + nodes * (sizeof(float) + 3 * sizeof(uint32_t) + 2);
+    const size_t numbers = 2 * most_rings * sizeof(double) + nodes * (sizeof(float) + 3 * sizeof(uint32_t) + 2);
     memset(out, 0, sizeof *out);
     out->bytes = numbers;
     out->by_ring = host->alloc(host, out->bytes, _Alignof(double));
@@ -25,7 +26,8 @@ int cut_open(const cull_host *host, const cells *c, const lists *l, cut *out)
     out->cells = c;
     out->lists = l;
     out->ring_count = most_rings;
-    out->prices = (float *)(out->by_ring + most_rings);
+    out->drawn_ring = out->by_ring + most_rings;
+    out->prices = (float *)(out->drawn_ring + most_rings);
     out->stamps = (uint32_t *)(out->prices + nodes);
     out->seen = out->stamps + nodes;
     out->taken = out->seen + nodes;
@@ -103,12 +105,19 @@ static double pixels_of(const cut_request *q, const spot *s)
     return wide * 2 * scale * (s->half[1] + 0.2 * (s->half[0] + s->half[2]));
 }
 
+// Each pixel of the rectangle is looked up, what is transparent there too, and its fringe is a second picture.
+static double showing_price(const cut_request *q, const spot *s)
+{
+    const double pixels = pixels_of(q, s), shown = pixels < q->optics.pixels ? pixels : q->optics.pixels;
+    return 2 * (q->costs->picture_ns + shown * q->picture_pixel_ns);
+}
+
 static double picture_price(const cut_request *q, const lists_node *node, const spot *s)
 {
     const cull_costs *c = q->costs;
-    const double pixels = pixels_of(q, s), shown = pixels < q->optics.pixels ? pixels : q->optics.pixels;
+    const double pixels = pixels_of(q, s);
     const double taking = c->capture_ns + node->polygon_count * c->polygon_ns + pixels * (c->capture_pixel_ns + COVERED * c->pixel_ns);
-    return 2 * c->picture_ns + COVERED * shown * q->picture_pixel_ns + taking / frames_of(q, s); // its fringe is a second picture
+    return showing_price(q, s) + taking / frames_of(q, s);
 }
 
 static double geometry_price(const cut_request *q, const lists_node *node, const spot *s)
@@ -186,41 +195,52 @@ static double share_of(const cut *c, uint32_t node)
     return (double)c->prices[shown] * (own < all ? own / all : 1);
 }
 
-static void settle_ring(cut *c, const cut_request *q)
+// Sums by rings; returns the last one in view. *least: the last one with a cell of which no picture can be taken.
+static int32_t sum_rings(cut *c, const cut_request *q, int32_t *least)
 {
     const ground *g = &c->cells->ground;
     const inview *v = q->inview;
-    int32_t best = -1, least = -1, last = -1;
-    double sum = 0, lowest = 0, at_old = 0;
+    int32_t last = -1;
+    *least = -1;
     c->geometry_ns = c->picture_ns = 0;
     for (uint32_t k = 0; k < v->count; k++) {
         const uint32_t node = nodes_of_cell(g, (ground_cell){(int32_t)(v->list[k] % g->columns), (int32_t)(v->list[k] / g->columns)});
         const int32_t ring = ring_of(c, q, v->list[k]);
         const spot s = spot_of(q->eye, &c->lists->nodes[node].box);
         const double drawn = geometry_price(q, &c->lists->nodes[node], &s);
-        last = ring > last ? ring : last;
+        const int is_taken = (double)c->prices[node] < INFINITY;
+        const double share = is_taken ? share_of(c, node) : drawn;
+        if (!is_taken && ring > *least) *least = ring;
+        if (ring > last) last = ring;
         c->geometry_ns += drawn;
-        if (!((double)c->prices[node] < INFINITY)) {
-            least = ring > least ? ring : least; // no picture of it can be taken
-            c->picture_ns += drawn;
-            continue;
-        }
-        const double share = share_of(c, node);
         c->picture_ns += share;
         c->by_ring[ring] += drawn - share;
+        c->drawn_ring[ring] += drawn;
     }
-    for (int32_t ring = 0; ring <= last; ring++) { // geometry up to `ring` instead of pictures
+    return last;
+}
+
+// The one up to which geometry instead of pictures costs least in all.
+static void settle_ring(cut *c, const cut_request *q)
+{
+    int32_t least;
+    const int32_t last = sum_rings(c, q, &least);
+    int32_t best = least;
+    double sum = 0, lowest = least < 0 ? 0 : INFINITY, at_old = INFINITY;
+    for (int32_t ring = 0; ring <= last; ring++) {
         sum += c->by_ring[ring];
-        c->by_ring[ring] = 0;
-        if (ring == c->ring) at_old = sum;
         if (ring < least) continue;
-        if (ring == least || sum < lowest) lowest = sum, best = ring;
+        if (ring == c->ring) at_old = sum;
+        if (sum < lowest) lowest = sum, best = ring;
     }
-    if (least < 0 && !(lowest < 0)) best = -1, lowest = 0;
-    // The whole zone counts: a ring is worth moving for a twentieth of it.
-    const int stays = q->history == CUT_GOES_ON && c->ring >= least && c->ring <= last && at_old - lowest < 0.05 * (c->picture_ns + lowest);
-    c->ring = stays ? c->ring : best;
-    c->picture_ns += stays ? at_old : lowest;
+    if (c->ring < 0 && least < 0) at_old = 0;
+    const int stays = q->history == CUT_GOES_ON && at_old - lowest < RING_WORTH * (c->picture_ns + lowest);
+    if (!stays) c->ring = best;
+    c->ring_ns = 0;
+    for (int32_t ring = 0; ring <= last; ring++) {
+        if (ring <= c->ring) c->ring_ns += c->drawn_ring[ring];
+        c->by_ring[ring] = c->drawn_ring[ring] = 0;
+    }
 }
 
 // ---- The nodes beyond it ----
@@ -258,6 +278,11 @@ static void take_nodes(cut *c, const cut_request *q)
         }
     }
     c->taken_count = nodes_in_order(g, c->marks, q->eye_cell, c->taken);
+    c->taken_ns = 0;
+    for (uint32_t k = 0; k < c->taken_count; k++) {
+        const spot s = spot_of(q->eye, &c->lists->nodes[c->taken[k]].box);
+        c->taken_ns += showing_price(q, &s);
+    }
 }
 
 void cut_make(cut *c, const cut_request *q)

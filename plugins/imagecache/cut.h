@@ -10,6 +10,7 @@
 
 #include "inview.h"
 #include "lists.h"
+#include "looks.h"
 
 typedef struct cut_optics {
     double pixels_per_tangent, near_distance;
@@ -27,6 +28,7 @@ typedef struct cut_request {
     ground_cell eye_cell;
     enum { CUT_TREE, CUT_CELLS } nodes; // CELLS: no node but the cells
     enum { CUT_ANEW, CUT_GOES_ON } history;
+    const looks *looks; // NULL: nobody looks what is hidden. It says nothing about prices: choices would come and go with it
 } cut_request;
 
 // A query's memory of it.
@@ -39,10 +41,12 @@ typedef struct cut {
     uint8_t *choices;   // by node: NODES_TAKE, one picture is cheapest; NODES_OPEN, those of its children
     nodes_mark *marks;  // by node, for nodes_in_order; all SKIP between frames
     uint32_t *taken;    // nodes shown as pictures, near first
-    double *by_ring;    // what geometry saves there
+    double *by_ring;    // what geometry costs there more than pictures
+    double *drawn_ring; // what geometry costs there
     uint32_t seen_count, taken_count, stamp, ring_count;
     int32_t ring;       // half the square's side: cut_ring of the last geometry; -1: none
-    double geometry_ns, picture_ns; // of the whole zone, as foretold: all as geometry, and as it is cut
+    double geometry_ns, picture_ns; // of all in view, as foretold: as geometry, and as pictures but where there can be none
+    double ring_ns, taken_ns;       // of what is geometry here, and of showing (not taking) what are pictures
     size_t bytes;
 } cut;
 

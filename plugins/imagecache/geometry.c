@@ -36,7 +36,13 @@ void geometry_begin(geometry *g, cull_run *runs, geometry_draws draws)
     }
     g->runs = runs;
     g->promised = draws;
-    g->run_count = g->tested = g->draws = 0;
+    g->run_count = g->tested = g->draws = g->settled = 0;
+}
+
+void geometry_settle(geometry *g)
+{
+    g->settled = g->run_count;
+    g->draws++;
 }
 
 // ---- Cells ----
@@ -63,7 +69,7 @@ void geometry_show(geometry *g, uint32_t cell, geometry_sight sight)
 
 static void put_run(geometry *g, uint32_t first, uint32_t count)
 {
-    cull_run *const last = g->run_count ? &g->runs[g->run_count - 1] : NULL;
+    cull_run *const last = g->run_count > g->settled ? &g->runs[g->run_count - 1] : NULL;
     if (last && last->first + last->count == first) last->count += count;
     else g->runs[g->run_count++] = (cull_run){first, count};
 }

@@ -20,6 +20,7 @@ typedef struct geometry { // a query's memory of it
     cull_run *runs;   // where this frame's go
     uint32_t stamp;   // of this frame; 0 in no frame
     uint32_t shown_count, run_count;
+    uint32_t settled; // runs that stay as they are: the host has them
     uint32_t tested;  // boxes judged this frame
     uint32_t draws;   // times geometry_draw was called this frame
     geometry_draws promised;
@@ -36,6 +37,8 @@ void geometry_close(const cull_host *host, geometry *g);
 
 void geometry_begin(geometry *g, cull_run *runs, geometry_draws draws); // runs: room for one an item
 void geometry_show(geometry *g, uint32_t cell, geometry_sight sight); // each cell once until geometry_draw, near first
+// A frame in which only what is drawn from now on may add to its runs: those there are, are the host's. All items are drawn by stamps.
+void geometry_settle(geometry *g);
 void geometry_draw(geometry *g);                                     // all that was shown, then none is
 
 #endif

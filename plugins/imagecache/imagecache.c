@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { FIGURE_COUNT = 10, FIGURES_BUILT = 5 }; // the others change when a query closes
+enum { FIGURE_COUNT = 15, FIGURES_BUILT = 5 }; // the others change when a query closes
 
 struct cull_culler {
     const cull_host *host;
@@ -73,6 +73,9 @@ static int make_figures(cull_culler *c)
         {"cell_listings", (double)s->listing_count, CULL_FIGURE_SUM, 0},
         {"frames_planned", 0, CULL_FIGURE_SUM, 0},              {"frames_of_geometry", 0, CULL_FIGURE_SUM, 0},
         {"pictures_shown", 0, CULL_FIGURE_SUM, 0},              {"pictures_taken", 0, CULL_FIGURE_SUM, 0},
+        {"pictures_early", 0, CULL_FIGURE_SUM, 0},              {"pictures_stale", 0, CULL_FIGURE_SUM, 0},
+        {"nodes_tested", 0, CULL_FIGURE_SUM, 0},                {"nodes_hidden", 0, CULL_FIGURE_SUM, 0},
+        {"pictures_evicted", 0, CULL_FIGURE_SUM, 0},
         {"error_px_most", 0, CULL_FIGURE_MAX, 0},
     };
     c->figures = c->host->alloc(c->host, sizeof figures, _Alignof(cull_figure));
@@ -84,12 +87,12 @@ static int make_figures(cull_culler *c)
 
 static void add_counts(cull_figure *figures, const show_counts *n)
 {
-    cull_figure *const used = figures + FIGURES_BUILT;
-    used[0].value += (double)n->frames;
-    used[1].value += (double)n->geometry_frames;
-    used[2].value += (double)n->pictures;
-    used[3].value += (double)n->captures;
-    if (n->error_px > used[4].value) used[4].value = n->error_px;
+    const double values[FIGURE_COUNT - FIGURES_BUILT - 1] = {(double)n->frames, (double)n->geometry_frames, (double)n->pictures, (double)n->captures,
+                                                             (double)n->early,  (double)n->stale,           (double)n->tests,    (double)n->hidden,
+                                                             (double)n->evicted};
+    cull_figure *const most = &figures[FIGURE_COUNT - 1];
+    for (int i = 0; i < FIGURE_COUNT - FIGURES_BUILT - 1; i++) figures[FIGURES_BUILT + i].value += values[i];
+    if (n->error_px > most->value) most->value = n->error_px;
 }
 
 static cull_result imagecache_build(cull_culler *c, const cull_zone *zone, const cull_hierarchy *lent, cull_built *out)
@@ -97,6 +100,10 @@ static cull_result imagecache_build(cull_culler *c, const cull_zone *zone, const
     (void)lent; // this culler selects; a hierarchy is for filters
     const inview_walk walk = c->options.ways.walk;
     cull_result result = cells_build(c->host, zone, c->options.level, &c->cells);
+    if (result == CULL_OK && c->options.show.show != SHOW_GEOMETRY && c->cells.ground.level > SHOW_LEVELS_MOST) {
+        cells_free(c->host, &c->cells);
+        result = cells_build(c->host, zone, SHOW_LEVELS_MOST, &c->cells);
+    }
     if (result == CULL_OK) result = show_build(c->host, zone, &c->cells, &c->options.show, &c->show);
     if (result != CULL_OK) return result;
     if ((walk == INVIEW_TREE || c->show.costs) && !tree_build(c->host, &c->cells, &c->tree)) return CULL_ERR_MEMORY;
@@ -165,22 +172,35 @@ static void show_tree(const cull_culler *c, const cull_visit *visit, cull_batch 
 }
 
 // 0: pictures don't pay here.
-static int show_far_and_near(cull_query *q, const cull_visit *visit, cull_batch *batch)
+static int show_near(cull_query *q, const show_frame *f, cull_batch *batch, cull_progress *out)
+{
+    inview_gather(&q->inview, f->visit, 0, q->culler->options.ways);
+    batch->nodes_visited += q->inview.rings_walked;
+    if (!show_plan(&q->show, f)) return 0;
+    geometry_begin(&q->geometry, batch->runs, GEOMETRY_DRAWN_OFTEN);
+    *out = show_geometry(&q->show, f, batch);
+    return 1;
+}
+
+// Near cells as geometry, far ones as pictures; in two steps where tests say which are hidden. 0: as show_near.
+static int show_near_and_far(cull_query *q, const cull_visit *visit, cull_batch *batch, cull_progress *out)
 {
     const show_frame f = {visit, &q->inview, &q->geometry, inview_eye(&q->culler->cells.ground, visit->view)};
-    inview_gather(&q->inview, visit, 0, q->culler->options.ways);
-    batch->nodes_visited += q->inview.rings_walked;
-    if (!show_pictures(&q->show, &f, batch)) return 0;
-    geometry_begin(&q->geometry, batch->runs + batch->run_count, GEOMETRY_DRAWN_OFTEN);
-    show_geometry(&q->show, &f, batch);
-    batch->nodes_visited += q->geometry.tested;
-    batch->run_count += q->geometry.run_count;
+    *out = CULL_DONE;
+    if (visit->step == 0 && (!show_takes(&q->show, visit) || !show_near(q, &f, batch, out))) return 0;
+    q->inview.volumes = visit->volumes; // lent for the step
+    if (*out == CULL_DONE) {
+        show_pictures(&q->show, &f, batch);
+        batch->nodes_visited += q->geometry.tested;
+    }
+    batch->run_count = q->geometry.run_count;
     return 1;
 }
 
 static cull_progress imagecache_select(cull_query *q, const cull_visit *visit, cull_batch *batch)
 {
-    if (show_takes(&q->show, visit) && show_far_and_near(q, visit, batch)) return CULL_DONE;
+    cull_progress progress;
+    if (show_near_and_far(q, visit, batch, &progress)) return progress;
     if (is_all_geometry(q->culler, visit)) {
         show_tree(q->culler, visit, batch);
         return CULL_DONE;
@@ -200,8 +220,13 @@ static cull_progress imagecache_select(cull_query *q, const cull_visit *visit, c
 
 static size_t imagecache_explain(cull_query *q, const cull_visit *visit, uint32_t item, char *text, size_t size)
 {
-    const explain_by by = is_all_geometry(q->culler, visit) ? EXPLAIN_BY_BOXES : EXPLAIN_BY_CELLS;
-    return explain_item(&q->culler->cells, by, visit, item, text, size);
+    const cells *c = &q->culler->cells;
+    const int had_pictures = q->show.last == SHOW_HAS_PICTURES;
+    const explain_by by = !had_pictures && is_all_geometry(q->culler, visit) ? EXPLAIN_BY_BOXES : EXPLAIN_BY_CELLS;
+    const size_t length = explain_item(c, by, visit, item, text, size);
+    if (!had_pictures || item >= c->item_count || size < 5 || strncmp(text, "kept", 4) != 0) return length;
+    const size_t told = show_explain(&q->show, item, text, size);
+    return told ? told : explain_item(c, by, visit, item, text, size);
 }
 
 static const void *imagecache_get_extension(const cull_culler *c, const char *id)

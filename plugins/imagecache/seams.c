@@ -9,6 +9,8 @@
 #include <math.h>
 #include <string.h>
 
+enum { RING_DRAWN = 1 }; // up to this one cells are drawn whatever hides them: the eye is in them, or beside
+
 int seams_build(const cull_host *host, const cells *c, seams_index *out)
 {
     out->bytes = (c->item_count + (size_t)1) * sizeof *out->spans;
@@ -43,11 +45,14 @@ int seams_open(const cull_host *host, const cells *c, const seams_index *index, 
     out->runs = host->alloc(host, out->bytes, _Alignof(cull_run));
     out->cells = c;
     out->index = index;
-    return out->runs != NULL;
+    out->waiting_bytes = c->cell_count * sizeof *out->waiting;
+    out->waiting = host->alloc(host, out->waiting_bytes, _Alignof(uint32_t));
+    return out->runs && out->waiting;
 }
 
 void seams_close(const cull_host *host, seams *s)
 {
+    if (s->waiting) host->free(host, s->waiting, s->waiting_bytes);
     if (s->runs) host->free(host, s->runs, s->bytes);
 }
 
@@ -99,8 +104,8 @@ static void clip(const seams *s, const seams_request *q, cull_clipped *out)
     const ground *g = &s->cells->ground;
     const square at = square_of(q, g);
     const double delta = delta_of(q, g, &at);
-    out->runs = s->runs;
-    out->run_count = s->run_count;
+    out->runs = s->runs + s->first_run;
+    out->run_count = s->run_count - s->first_run;
     out->plane_count = 4;
     out->planes[0] = (cull_plane){{1, 0, 0}, (float)(delta - at.low_x)};
     out->planes[1] = (cull_plane){{-1, 0, 0}, (float)(delta + at.high_x)};
@@ -114,7 +119,7 @@ static void clip(const seams *s, const seams_request *q, cull_clipped *out)
 
 static void put(seams *s, uint32_t place)
 {
-    cull_run *const last = s->run_count ? &s->runs[s->run_count - 1] : NULL;
+    cull_run *const last = s->run_count > s->first_run ? &s->runs[s->run_count - 1] : NULL;
     if (last && last->first + last->count == place) last->count++;
     else s->runs[s->run_count++] = (cull_run){place, 1};
 }
@@ -134,20 +139,50 @@ static void part_cell(seams *s, const seams_request *q, uint32_t cell)
     }
 }
 
+static void draw_cell(seams *s, const seams_request *q, uint32_t cell)
+{
+    const geometry_sight sight = {q->inview->volumes, q->inview->masks[cell]};
+    part_cell(s, q, cell);
+    geometry_show(q->geometry, cell, sight);
+}
+
+static void finish_step(seams *s, const seams_request *q, cull_batch *batch)
+{
+    if (s->run_count > s->first_run) clip(s, q, &batch->clipped[batch->clipped_count++]);
+    s->first_run = s->run_count;
+    geometry_draw(q->geometry);
+}
+
+static ground_cell place_of(const ground *g, uint32_t cell)
+{
+    const ground_cell c = {(int32_t)(cell % g->columns), (int32_t)(cell / g->columns)};
+    return c;
+}
+
 void seams_draw(seams *s, const seams_request *q, cull_batch *batch)
 {
     const inview *v = q->inview;
-    const uint32_t columns = s->cells->ground.columns;
-    s->run_count = s->clipped_count = 0;
-    q->geometry->draws = 1; // stamps count from the start
+    const ground *g = &s->cells->ground;
+    s->run_count = s->first_run = s->waiting_count = 0;
+    geometry_settle(q->geometry);
     for (uint32_t k = 0; k < v->count; k++) {
-        const uint32_t cell = v->list[k];
-        if (cut_ring(q->eye, (int32_t)(cell % columns), (int32_t)(cell / columns)) > q->ring) continue;
-        const geometry_sight sight = {v->volumes, v->masks[cell]};
-        part_cell(s, q, cell);
-        geometry_show(q->geometry, cell, sight);
+        const ground_cell at = place_of(g, v->list[k]);
+        const int32_t ring = cut_ring(q->eye, at.i, at.j);
+        if (ring > q->ring) continue;
+        const uint32_t node = nodes_of_cell(g, at);
+        if (q->looks && ring > RING_DRAWN && looks_should_wait(q->looks, node)) {
+            looks_ask_box(q->looks, node, batch);
+            s->waiting[s->waiting_count++] = v->list[k];
+        } else draw_cell(s, q, v->list[k]);
     }
-    if (s->run_count) clip(s, q, &batch->clipped[batch->clipped_count++]);
-    s->clipped_count = s->run_count > 0;
-    geometry_draw(q->geometry);
+    finish_step(s, q, batch);
+}
+
+void seams_draw_rest(seams *s, const seams_request *q, cull_batch *batch)
+{
+    const ground *g = &s->cells->ground;
+    geometry_settle(q->geometry);
+    for (uint32_t k = 0; k < s->waiting_count; k++)
+        if (!looks_is_hidden(q->looks, nodes_of_cell(g, place_of(g, s->waiting[k])))) draw_cell(s, q, s->waiting[k]);
+    finish_step(s, q, batch);
 }

@@ -9,6 +9,7 @@
 
 #include "geometry.h"
 #include "inview.h"
+#include "looks.h"
 
 // The columns and rows of cells that list an item.
 typedef struct seams_span { uint16_t first_i, last_i, first_j, last_j; } seams_span;
@@ -25,8 +26,9 @@ typedef struct seams { // a query's memory
     const cells *cells;
     const seams_index *index;
     cull_run *runs; // of clipped items
-    uint32_t run_count, clipped_count;
-    size_t bytes;
+    uint32_t *waiting; // cells whose boxes are tested first
+    uint32_t run_count, first_run, waiting_count; // first_run: of the step
+    size_t bytes, waiting_bytes;
 } seams;
 
 int seams_open(const cull_host *host, const cells *c, const seams_index *index, seams *out); // 0: no memory
@@ -39,8 +41,11 @@ typedef struct seams_request {
     int32_t ring; // the last one of geometry
     double at[3]; // the eye
     double pixels_per_tangent, tolerance_px;
+    looks *looks; // NULL: nothing is tested, all is drawn at once
 } seams_request;
 
 void seams_draw(seams *s, const seams_request *q, cull_batch *batch);
+// In the next step: those of the cells tested that are not hidden.
+void seams_draw_rest(seams *s, const seams_request *q, cull_batch *batch);
 
 #endif

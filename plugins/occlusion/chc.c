@@ -15,15 +15,15 @@ static const float INTERVAL_MOST = 24;     // frames
 // ---- Memory ----
 
 typedef struct array_plan { void **array; size_t count, size; } array_plan;
-enum { PLANS = 6 };
+enum { PLANS = 6, DUE_AN_ENTRY = 2 }; // due: once when its time has come, and about once before
 
 static void plans_fill(const occlusion_history *h, occlusion_chc *c, array_plan plans[PLANS])
 {
-    const size_t seen = (size_t)h->tree->item_count + h->mover_capacity, all = h->tree->node_count + seen, tests = all * TESTS_AN_ENTRY;
+    const size_t seen = (size_t)h->tree->item_count + h->mover_capacity, all = h->tree->node_count + seen, tests = all * TESTS_AN_ENTRY, due = seen * DUE_AN_ENTRY;
     const array_plan made[PLANS] = {
         {(void **)&c->past, all, sizeof *c->past},       {(void **)&c->seen_now, all, sizeof *c->seen_now},
         {(void **)&c->queue, all, sizeof *c->queue},     {(void **)&c->tests, tests, sizeof *c->tests},
-        {(void **)&c->members, tests, sizeof *c->members}, {(void **)&c->due, seen, sizeof *c->due},
+        {(void **)&c->members, tests, sizeof *c->members}, {(void **)&c->due, due, sizeof *c->due},
     };
     memcpy(plans, made, sizeof made);
 }
@@ -38,7 +38,7 @@ cull_result chc_open(const cull_host *host, occlusion_history *h, const chc_requ
     array_plan plans[PLANS];
     occlusion_chc *c = host->alloc(host, sizeof *c, _Alignof(occlusion_chc));
     if (!c) return CULL_ERR_MEMORY;
-    *c = (occlusion_chc){.batches = q->batches, .member_most = q->entries * TESTS_AN_ENTRY};
+    *c = (occlusion_chc){.batches = q->batches, .member_most = q->entries * TESTS_AN_ENTRY, .due_most = (h->tree->item_count + h->mover_capacity) * DUE_AN_ENTRY};
     h->chc = c;
     plans_fill(h, c, plans);
     for (int i = 0; i < PLANS; i++) {
@@ -69,7 +69,7 @@ void chc_begin(occlusion_walk *w)
     c->queue_count = c->test_count = c->first_open = c->member_count = c->open_count = 0;
     c->waited = c->rounds = c->has_picture = c->marked_count = 0;
     c->is_first = w->h->seen_count == 0 || (w->visit->view->flags & CULL_VIEW_CUT);
-    c->due_count = c->due_asked = c->fills = 0;
+    c->due_count = c->due_asked = c->fills = c->pair_count = 0;
 }
 
 // ---- What is known of an entry ----

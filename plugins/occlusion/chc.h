@@ -32,7 +32,7 @@ typedef struct chc_test {
     float chance;          // of the answer "hidden", by its parts alone
     uint32_t step_cost;    // its share of what a step of tests costs, as in ledger.h
     uint32_t pixels;       // the answer, when is_heard
-    uint8_t growth, hides, is_open, is_heard, is_split, is_known, spare[2]; // is_split: alone after a joint test; is_known: they stood so before
+    uint8_t growth, hides, is_open, is_heard, is_split, is_known, is_paired, spare; // is_split: alone after a joint test; is_known: they stood so before; is_paired: tried with the next
 } chc_test;
 
 // Two tests of a frame that one box round both may do for in the next.
@@ -49,7 +49,7 @@ typedef struct occlusion_chc {
     chc_picture picture; // of the first marked_count items drawn in this frame
     uint32_t queue_count, test_count, first_open, member_count, member_most, open_count, due_count, due_asked, waited, rounds, has_picture, marked_count;
     chc_pair pairs[CHC_PAIRS_MOST]; // the last that were tried
-    uint32_t pair_next;
+    uint32_t pair_next, pair_count, due_most; // pair_count: of this frame
     uint32_t fills; // steps since an answer came, without work that the frame needs
     uint32_t batches, is_first; // batches: tests are saved up; is_first: nothing to go by
 } occlusion_chc;

@@ -79,6 +79,7 @@ void history_lose(occlusion_history *h, uint32_t place)
 void history_forget(occlusion_history *h)
 {
     for (uint32_t i = 0; i < h->seen_count; i++) history_lose(h, h->seen_list[i]);
+    for (uint32_t i = 0; i < h->drawn_count; i++) h->items[h->drawn_list[i]] &= (uint8_t)~ITEM_LOST;
     h->seen_count = h->drawn_count = 0;
 }
 

@@ -3,7 +3,7 @@
 //
 // Costs are counted in polygons that the host would draw, not timed, from the set that was found: the same on every machine and for any count of
 // threads. A polygon drawn into the pyramid takes a third to nine tenths of the time of one that a software renderer draws, by its size: it counts
-// half; a box is an outline with up to three planes: two; a frame's own work sixteen. In frames 1 to 4 and every eighth
+// half; a box is an outline with up to three planes: two; a frame's own work sixteen. In the first frames of a time and every eighth
 // it is looked what was hidden. Where that is less than what it cost, all that touches the volumes is drawn for 8 frames, then 16, 32, 64;
 // then one frame is tried. That is tried earlier, after a quarter of the pause, where a quarter more or fewer items stand in the view.
 #ifndef OCCLUSION_HIZ_REST_H

@@ -3,8 +3,8 @@ layout(location = 0) out vec4 colour;
 layout(location = 8) uniform float alpha;       // of this pass
 layout(location = 9) uniform vec2 depth_range;  // distances of white and black, metres
 #ifdef SHADED
-in vec4 v_front;    // as it is seen from in front, lit at the vertices; w above 0: its normal points away from the eye
-flat in uint v_back; // from behind; alpha 0: it has no normal, and v_front is its paint
+in vec4 v_front;    // as it is seen from in front, lit at the vertices; w: how far its normal points away from the eye, times the distance
+flat in uint v_back; // from behind; alpha 0: it has no normal, and this is its paint
 #endif
 #ifdef EYE_POSITION
 in vec3 v_eye;
@@ -33,11 +33,11 @@ vec3 shaded()
     if (v_back < 0x01000000u) {
         vec3 face = cross(dFdx(v_eye), dFdy(v_eye));
         face *= dot(face, v_eye) > 0.0 ? -1.0 : 1.0;
-        return lit(v_front.rgb, face / max(length(face), 1e-30)); // a face of no area has no direction; anything but NaN will do
+        return lit(unpackUnorm4x8(v_back).rgb, face / max(length(face), 1e-30)); // a face of no area has no direction; anything but NaN will do
     }
 #endif
     // Seen edge-on a face may turn over when its corners are rounded to the raster's grid: what is all but edge-on is not turned round.
-    return !gl_FrontFacing && v_front.w > 0.0 ? unpackUnorm4x8(v_back).rgb : v_front.rgb;
+    return !gl_FrontFacing && v_front.w > 0.2 / gl_FragCoord.w ? unpackUnorm4x8(v_back).rgb : v_front.rgb;
 }
 #endif
 

@@ -79,13 +79,13 @@ void shade(vec3 from_eye)
     float size = length(n);
     n /= max(size, 1e-30);
     if ((word & WORD_SKY) != 0u) {
-        v_front = vec4(0.47, 0.70, 0.96, -1.0);
+        v_front = vec4(0.47, 0.70, 0.96, 0.0);
         v_back = packUnorm4x8(vec4(v_front.rgb, 1.0));
     } else if (size < 0.5) { // no normal; packed ones are near 1
-        v_front = vec4(paint.rgb, 0.0);
-        v_back = 0u;
+        v_front = vec4(lit(paint.rgb, vec3(0.0, 1.0, 0.0)), 0.0); // where the last corner has one, and this has not
+        v_back = packUnorm4x8(vec4(paint.rgb, 0.0));
     } else {
-        v_front = vec4(lit(paint.rgb, n), dot(n, from_eye) - 0.2 * length(from_eye));
+        v_front = vec4(lit(paint.rgb, n), dot(n, from_eye));
         v_back = packUnorm4x8(vec4(lit(paint.rgb, -n), 1.0));
     }
 }
