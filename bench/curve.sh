@@ -10,8 +10,8 @@ portcullis=$1 out=$2 scene=$3 views=$4
 shift 4
 values=${VALUES-0.25 0.5 1 2 4 8 16}
 baselines=${BASELINES-octree octree+occlusion}
-[ $# -gt 0 ] || set -- 'quad, quadtree:imagecache[tolerance=@,show=quad,quadtree=1]' 'quad:imagecache[tolerance=@,show=quad,quadtree=0]' \
-  'centre, quadtree:imagecache[tolerance=@,show=centre,quadtree=1]' 'centre:imagecache[tolerance=@,show=centre,quadtree=0]'
+[ $# -gt 0 ] || set -- 'quad, quadtree:imagecache[tolerance=@,show=quad,tree=on]' 'quad:imagecache[tolerance=@,show=quad,tree=off]' \
+  'centre, quadtree:imagecache[tolerance=@,show=centre,tree=on]' 'centre:imagecache[tolerance=@,show=centre,tree=off]'
 keys='total_ms total_ms_p95 total_ms_p99 flip flip_p99 psnr ssim crack_pixels missed_pixels picture_bytes refreshes polygons_drawn'
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

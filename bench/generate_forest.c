@@ -134,17 +134,11 @@ static void roof_write(forest *f, const block *b, random_stream *r)
     const int32_t mid_x = (x0 + x1) / 2, mid_z = (z0 + z1) / 2;
     const place e = along_x ? (place){x0, top, mid_z} : (place){mid_x, top, z1}, g = along_x ? (place){x1, top, mid_z} : (place){mid_x, top, z0};
     obj_material(&f->w, materials[random_below(r, 3)]);
-    if (along_x) {
-        obj_polygon(&f->w, (const place[4]){c[1], c[2], g, e}, 4);
-        obj_polygon(&f->w, (const place[4]){c[3], c[0], e, g}, 4);
-        obj_polygon(&f->w, (const place[3]){c[0], c[1], e}, 3);
-        obj_polygon(&f->w, (const place[3]){c[2], c[3], g}, 3);
-    } else {
-        obj_polygon(&f->w, (const place[4]){c[0], c[1], e, g}, 4);
-        obj_polygon(&f->w, (const place[4]){c[2], c[3], g, e}, 4);
-        obj_polygon(&f->w, (const place[3]){c[1], c[2], e}, 3);
-        obj_polygon(&f->w, (const place[3]){c[3], c[0], g}, 3);
-    }
+    const int k = along_x ? 0 : 1; // the corner where the gable under e begins
+    obj_polygon(&f->w, (const place[4]){c[k + 1], c[k + 2], g, e}, 4);
+    obj_polygon(&f->w, (const place[4]){c[(k + 3) % 4], c[k], e, g}, 4);
+    obj_polygon(&f->w, (const place[3]){c[k], c[k + 1], e}, 3);
+    obj_polygon(&f->w, (const place[3]){c[k + 2], c[(k + 3) % 4], g}, 3);
     obj_polygon(&f->w, (const place[4]){c[0], c[3], c[2], c[1]}, 4); // eaves, from below
 }
 

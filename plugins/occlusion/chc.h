@@ -32,7 +32,7 @@ typedef struct chc_test {
     float chance;          // of the answer "hidden", by its parts alone
     uint32_t step_cost;    // its share of what a step of tests costs, as in ledger.h
     uint32_t pixels;       // the answer, when is_heard
-    uint8_t growth, hides, is_open, is_heard, is_split, is_known, is_paired, spare; // is_split: alone after a joint test; is_known: they stood so before; is_paired: tried with the next
+    uint8_t growth, hides, is_open, is_heard, is_split, is_known, is_paired; // is_split: alone after a joint test; is_known: they stood so before; is_paired: tried with the next
 } chc_test;
 
 // Two tests of a frame that one box round both may do for in the next.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #define _POSIX_C_SOURCE 200809L
 #include "bench/generate.h"
+#include "obj_probe.h"
 #include "tests/common/scratch_folder.h"
 #include "tests/common/test.h"
 
@@ -21,16 +22,8 @@ static char *text_of(const wish *q, size_t *size)
     scratch_folder_name(&folder, q->file, path, sizeof path);
     scratch_folder_name(&folder, q->read, read, sizeof read);
     assert_int_equal(generate_scene(q->kind, q->size, q->seed, path, allocator_heap(), &r), RESULT_OK);
-    FILE *f = fopen(read, "rb");
-    assert_non_null(f);
-    fseek(f, 0, SEEK_END);
-    *size = (size_t)ftell(f);
-    rewind(f);
-    char *text = malloc(*size + 1);
+    char *text = bytes_of_file(read, size);
     assert_non_null(text);
-    assert_int_equal(fread(text, 1, *size, f), *size);
-    text[*size] = 0;
-    fclose(f);
     scratch_folder_remove(&folder);
     return text;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #define _POSIX_C_SOURCE 200809L
 #include "bench/generate.h"
+#include "tests/bench/obj_probe.h"
 #include "tests/common/scratch_folder.h"
 #include "tests/common/test.h"
 
@@ -20,16 +21,8 @@ static char *terrain_text(uint64_t tiles, uint64_t seed, size_t *size)
     scratch_folder_make(&folder);
     scratch_folder_name(&folder, "terrain.obj", path, sizeof path);
     assert_int_equal(generate_scene("terrain", tiles, seed, path, allocator_heap(), &r), RESULT_OK);
-    FILE *f = fopen(path, "rb");
-    assert_non_null(f);
-    fseek(f, 0, SEEK_END);
-    *size = (size_t)ftell(f);
-    rewind(f);
-    char *text = malloc(*size + 1);
+    char *text = bytes_of_file(path, size);
     assert_non_null(text);
-    assert_int_equal(fread(text, 1, *size, f), *size);
-    text[*size] = 0;
-    fclose(f);
     scratch_folder_remove(&folder);
     return text;
 }
