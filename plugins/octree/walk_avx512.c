@@ -38,7 +38,9 @@ static inline void ends_to_counts(uint32_t *changes, uint32_t run_count)
 
 #include "walk_reorder.h"
 
+#include "walk_judge.h"
 #include "walk_body.h"
+#include "walk_segments_body.h"
 #include "walk_many_body.h"
 
 const walk_kernel walk_avx512 = {"avx512", walk_any};

@@ -1,44 +1,7 @@
-// The walk for several volumes and for faces, all in one pass. Included behind walk_body.h.
+// The walk for several volumes and for faces, all in one pass. Included behind the walk for one.
 // SPDX-License-Identifier: MIT
 // Invariant: an item is met once, with what every volume and its face say of it together. A node is entered with the volumes that cut it,
 // each with the planes that do; one volume that has all of a node inside ends the asking below it.
-
-// ---- What is found: runs as in walk_body.h, item by item ----
-
-typedef struct found { // in registers while a node is walked: what is written could otherwise be any of these
-    uint32_t *out;
-    uint32_t open; // 1: the item before `at` is visible, its run not yet closed
-    uint32_t at;
-} found;
-
-// Items from `first` on come next.
-static inline found found_to(found f, uint32_t first)
-{
-    const uint32_t goes_on = f.at == first;
-    *f.out = f.at;
-    f.out += f.open & (goes_on ^ 1);
-    f.open &= goes_on;
-    return f;
-}
-
-static inline found put_whole(found f, uint32_t first, uint32_t end)
-{
-    f = found_to(f, first);
-    *f.out = first;
-    f.out += f.open ^ 1;
-    f.open = 1;
-    f.at = end;
-    return f;
-}
-
-// Items base .. base + count-1; further bits of visible are 0.
-static inline found put_leaf(found f, uint32_t visible, uint32_t base, uint32_t count)
-{
-    const uint32_t before = visible << 1 | f.open;
-    f.out = put_places((visible ^ before) & ((1u << count) - 1), base, f.out);
-    f.open = before >> count & 1;
-    return f;
-}
 
 // ---- Several volumes ----
 
@@ -83,7 +46,7 @@ static inline void many_cut_leaf(many_walk *m, uint32_t leaf, const part_list *l
 {
     uint32_t visible = 0;
     for (uint32_t i = 0; i < list->count; i++) {
-        visible |= cull_block_touch(leaf_at(m->w.index, leaf), m->planes[list->parts[i].volume], list->parts[i].planes);
+        visible |= judge_touch(leaf_at(m->w.index, leaf), m->planes[list->parts[i].volume], list->parts[i].planes);
         m->w.nodes++;
     }
     many_leaf(m, leaf, visible);

@@ -1,28 +1,10 @@
-// The kernels in plain C: what the compiler makes of the baseline.
+// The kernels for the baseline of the CPU's kind.
 // SPDX-License-Identifier: MIT
 #include "walk.h"
 
 static inline uint32_t *put_places(uint32_t bits, uint32_t base, uint32_t *out)
 {
     for (; bits; bits &= bits - 1) *out++ = base + (uint32_t)__builtin_ctz(bits);
-    return out;
-}
-
-static inline uint32_t *put_firsts(uint32_t bits, const uint32_t *firsts, uint32_t *out)
-{
-    for (; bits; bits &= bits - 1) *out++ = firsts[__builtin_ctz(bits)];
-    return out;
-}
-
-static inline void put_all_or_none(uint32_t bits, uint32_t *out)
-{
-    for (uint32_t i = 0; i < CULL_BLOCK_WIDTH; i++) out[i] = bits >> i & 1 ? ALL_ITEMS : 0;
-}
-
-static inline uint32_t pick(uint32_t bits, uint32_t mask)
-{
-    uint32_t out = 0;
-    for (uint32_t place = 0; mask; mask &= mask - 1) out |= (bits >> cull_lowest_bit(mask) & 1) << place++;
     return out;
 }
 
@@ -38,7 +20,9 @@ static inline uint32_t reorder(uint32_t bits, uint64_t order)
     return out;
 }
 
+#include "walk_judge.h"
 #include "walk_body.h"
+#include "walk_direct_body.h"
 #include "walk_many_body.h"
 
 const walk_kernel walk_plain = {"plain", walk_any};
