@@ -51,6 +51,7 @@ typedef struct occlusion_chc {
     chc_pair pairs[CHC_PAIRS_MOST]; // the last that were tried
     uint32_t pair_next, pair_count, due_most; // pair_count: of this frame
     uint32_t fills; // steps since an answer came, without work that the frame needs
+    uint32_t sample_first; // of the tests, in a frame that asks a sample
     uint32_t batches, is_first; // batches: tests are saved up; is_first: nothing to go by
 } occlusion_chc;
 
@@ -66,6 +67,8 @@ void chc_hear(occlusion_walk *w);
 void chc_queue_add(occlusion_walk *w, tree_entry e, uint64_t how); // how: CHC_ALONE or 0
 // Asks for the queue's tests, neighbours likely to be hidden in one; at most `most` tests, of what there is room for.
 void chc_ask(occlusion_walk *w, uint32_t most);
+// Asks for a sample of the queue, see sample.h, which the tests from sample_first on are. There is room; nothing is open.
+void chc_ask_sample(occlusion_walk *w);
 // Of what was seen before: it is to be tested again; it is lost so likely that the test comes before the drawing.
 int chc_is_due(const occlusion_walk *w, tree_entry e);
 int chc_is_doubtful(const occlusion_walk *w, tree_entry e);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "chc.h"
 #include "ledger.h"
+#include "sample.h"
 
 enum { ROUND_TESTS = 2, PICTURE_MARKS = 1024, JOIN_TRIES = 12 }; // a joint test that fails costs a round more: as many tests
 static const float FUTURE_MOST = 8;                             // frames that a new joint test is reckoned to save a test in
@@ -225,4 +226,18 @@ void chc_ask(occlusion_walk *w, uint32_t most)
     }
     c->queue_count = kept;
     for (uint32_t i = first; i < c->test_count; i++) c->tests[i].step_cost = LEDGER_ROUND / 4 / (c->test_count - first); // nobody waits
+}
+
+void chc_ask_sample(occlusion_walk *w)
+{
+    occlusion_chc *c = w->h->chc;
+    const uint32_t count = c->queue_count, stride = sample_stride(count);
+    uint32_t kept = 0;
+    c->sample_first = c->test_count;
+    for (uint32_t i = 0; i < SAMPLE_TESTS; i++) ask_one(w, i * stride, 0);
+    for (uint32_t at = 0; at < count; at++)
+        if (c->queue[at] != QUEUE_TAKEN) c->queue[kept++] = c->queue[at];
+    c->queue_count = kept;
+    for (uint32_t i = c->sample_first; i < c->test_count; i++) c->tests[i].step_cost = LEDGER_ROUND / SAMPLE_TESTS;
+    sample_begin(w);
 }

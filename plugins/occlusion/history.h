@@ -46,7 +46,7 @@ typedef struct occlusion_history {
     uint32_t *drawn;      // by place: serial of the frame that drew it last
     uint32_t *seen_list, *drawn_list; // places seen last frame; drawn in this one
     ledger_page *pages;   // by node, of units
-    uint64_t *masked;     // by place: not a candidate, or a picture stands for it. Empty without mask_used
+    uint64_t *masked;     // by place: not a candidate, or a picture or a clipped part stands for it. Empty without mask_used
     uint32_t *node_marks; // by node: serial of the frame that has candidates below it; candidates only
     heap_entry *heap;     // room for every entry
     tree_entry *pending;  // entries tested and not decided

@@ -153,15 +153,16 @@ static void runs_mark(const hiz_tree *t, const cull_run *runs, uint32_t count, u
         for (uint32_t item = runs[i].first; item - runs[i].first < runs[i].count && item < t->item_count; item++) bits_set(bits, t->slots[item]);
 }
 
-// Candidates, or all but what pictures stand for; then each node that has such a one below. 0: all there is.
+// Candidates, or all but what pictures stand for and what is drawn clipped; then each node that has such a one below. 0: all there is.
 static int active_mark(const hiz_tree *t, const cull_visit *visit, hiz_room *room)
 {
-    if (!visit->candidates && !visit->picture_count) return 0;
+    if (!visit->candidates && !visit->picture_count && !visit->clipped_count) return 0;
     for (uint32_t level = 0; level < t->level_count; level++) memset(room->active[level], 0, (t->counts[level] / 64 + 1) * sizeof(uint64_t));
     uint64_t *bits = room->active[0];
     if (visit->candidates) runs_mark(t, visit->candidates, visit->candidate_count, bits);
     else {
         for (uint32_t i = 0; i < visit->picture_count; i++) runs_mark(t, visit->pictures[i].runs, visit->pictures[i].run_count, bits);
+        for (uint32_t i = 0; i < visit->clipped_count; i++) runs_mark(t, visit->clipped[i].runs, visit->clipped[i].run_count, bits);
         for (uint32_t i = 0; i <= t->item_count / 64; i++) bits[i] = ~bits[i];
     }
     for (uint32_t level = 1; level < t->level_count; level++)

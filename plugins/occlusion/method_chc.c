@@ -8,6 +8,7 @@
 #include "ledger.h"
 #include "method.h"
 #include "rest.h"
+#include "sample.h"
 
 enum { QUEUE_MOST = 256, DIRECT_ITEMS = 64, ROUNDS_MOST = 8 };
 // QUEUE_MOST: tests saved up. DIRECT_ITEMS: a node come into sight with no more is tested item by item. ROUNDS_MOST: after which
@@ -226,6 +227,38 @@ static void look_at_movers(chc_walk *t)
         else chc_queue_add(w, walk_mover_entry(w, m), 0);
 }
 
+// ---- Whether a zone is worth its first tests ----
+
+// All that was open is drawn, but for what the sample found hidden. Of what is drawn the sample alone counts, as of what is hidden.
+static void give_up(chc_walk *t)
+{
+    occlusion_walk *w = t->w;
+    while (w->h->heap_count) {
+        const tree_entry e = heap_pop(w->h->heap, &w->h->heap_count).entry;
+        ledger_show(&w->h->zone, tree_entry_polygons(w->tree, e));
+        sample_draw(w, e);
+    }
+    for (uint32_t i = 0; i < t->c->queue_count; i++) sample_draw(w, (tree_entry)t->c->queue[i]);
+    t->c->queue_count = 0;
+    sample_give_up(w);
+}
+
+// The heap holds what the sample found seen: before it the first frame's walk was done, and nothing else was under way.
+static void judge_sample(chc_walk *t)
+{
+    const uint32_t first = t->c->sample_first, tests = t->c->test_count - first;
+    uint32_t hidden = 0;
+    if (!sample_is_answered(t->w)) return;
+    for (uint32_t i = first; i < t->c->test_count; i++) hidden += t->c->tests[i].is_heard && t->c->tests[i].pixels == 0;
+    if (!sample_pays(t->w, tests, hidden)) give_up(t);
+}
+
+static int is_worth_a_sample(const chc_walk *t)
+{
+    const int is_alone = t->c->is_first && !t->w->h->phase && !t->w->h->heap_count && !t->c->open_count && !t->is_last;
+    return is_alone && t->c->member_most - t->c->member_count >= SAMPLE_TESTS && sample_is_due(t->w, t->c->queue_count);
+}
+
 // The last step there is: all that is open is drawn.
 static void draw_all(chc_walk *t)
 {
@@ -254,11 +287,21 @@ static int is_open(const chc_walk *t)
 static cull_progress end(chc_walk *t)
 {
     occlusion_walk *w = t->w;
-    if (!(w->visit->view->flags & CULL_VIEW_CUT)) chc_ask_due(w, UINT32_MAX);
-    chc_join_pairs(w);
-    rest_count_drawn(w);
+    if (sample_gave_up(w)) history_forget(w->h);
+    else {
+        if (!(w->visit->view->flags & CULL_VIEW_CUT)) chc_ask_due(w, UINT32_MAX);
+        chc_join_pairs(w);
+        rest_count_drawn(w);
+    }
     history_turn(w->h);
     return CULL_DONE;
+}
+
+static cull_progress wait_for(occlusion_walk *w, uint32_t tests)
+{
+    w->h->chc->waited = 1;
+    w->h->counters.waited += tests;
+    return CULL_WAIT;
 }
 
 // While answers are out, what is of use to the next frame is done. With nothing left it waits.
@@ -269,9 +312,7 @@ static cull_progress go_on(chc_walk *t)
     if (!is_open(t)) return end(t);
     if (w->h->heap_count || c->queue_count || w->batch->test_count || w->batch->run_count > w->h->first_run) return CULL_MORE;
     if (chc_fill(w)) return CULL_MORE;
-    c->waited = 1;
-    w->h->counters.waited += c->open_count;
-    return CULL_WAIT;
+    return wait_for(w, c->open_count);
 }
 
 static cull_progress step(occlusion_walk *w)
@@ -282,6 +323,7 @@ static cull_progress step(occlusion_walk *w)
     if (w->visit->step == 0) begin(&t);
     const uint32_t known = w->h->heap_count;
     chc_hear(w);
+    judge_sample(&t);
     const uint32_t has_news = w->visit->step && w->h->heap_count > known;
     c->rounds += has_news != 0;
     t.is_covering = (has_news && c->rounds <= ROUNDS_MOST) || (c->is_first && w->visit->step == 0);
@@ -289,6 +331,10 @@ static cull_progress step(occlusion_walk *w)
     if (t.is_last) draw_all(&t);
     traverse(&t);
     look_at_movers(&t);
+    if (is_worth_a_sample(&t)) {
+        chc_ask_sample(w);
+        return wait_for(w, SAMPLE_TESTS);
+    }
     if (t.is_last) draw_all(&t);
     else if (c->queue_count && (!w->h->heap_count || c->queue_count >= (c->batches ? QUEUE_MOST : 1))) chc_ask(w, c->batches ? UINT32_MAX : 1);
     return go_on(&t);

@@ -6,9 +6,9 @@
 #include "ledger.h"
 #include "method.h"
 #include "rest.h"
+#include "sample.h"
 
 enum { STEPS = 8, DIRECT_ITEMS = 64 }; // DIRECT_ITEMS: a node seen with no more is tested item by item
-enum { TRIAL_TESTS = 128, TRIAL_PENDING = 512 }; // of a zone that has not been worth its tests: a sample, that decides about more than so many
 
 enum { MOVERS_OPEN, MOVERS_ASKED }; // a phase
 
@@ -184,28 +184,24 @@ static void draw_layer(twophase *t)
 static void ask_sample(occlusion_walk *w)
 {
     occlusion_history *h = w->h;
-    const uint32_t stride = h->pending_count / TRIAL_TESTS;
-    for (uint32_t i = 0; i < TRIAL_TESTS; i++) {
+    const uint32_t stride = sample_stride(h->pending_count);
+    for (uint32_t i = 0; i < SAMPLE_TESTS; i++) {
         const tree_entry e = h->pending[i];
         h->pending[i] = h->pending[i * stride];
         h->pending[i * stride] = e;
     }
-    h->tried = h->serial;
-    h->sampled_step = w->visit->step;
-    h->gained_before = h->zone.gained;
-    walk_ask(w, TRIAL_TESTS);
+    sample_begin(w);
+    walk_ask(w, SAMPLE_TESTS);
 }
 
-// The sample took away what it cost, and a part of the entries that counts. A round is not counted: it is one.
-static int sample_pays(const occlusion_walk *w, uint32_t gained_before)
+static uint32_t hidden_of_sample(const occlusion_walk *w)
 {
     uint32_t hidden = 0;
     for (uint32_t i = 0; i < w->h->tested_count; i++) hidden += w->h->pixels[i] == 0;
-    return w->h->zone.gained - gained_before >= w->h->tested_count * LEDGER_TEST && hidden >= w->h->tested_count / LEDGER_SHARE;
+    return hidden;
 }
 
-// All that is pending is drawn, but for what the sample found hidden. The next frame begins with a sample, too: the view may be
-// another. Of what is drawn the sample alone counts, as of what is hidden.
+// All that is pending is drawn, but for what the sample found hidden. Of what is drawn the sample alone counts, as of what is hidden.
 static void give_up(twophase *t)
 {
     occlusion_walk *w = t->w;
@@ -214,26 +210,21 @@ static void give_up(twophase *t)
         const tree_entry e = h->pending[i];
         if (i < h->tested_count && h->pixels[i] == 0) continue;
         if (i < h->tested_count) ledger_show(&h->zone, tree_entry_polygons(w->tree, e));
-        if (tree_is_node(w->tree, e)) walk_draw_below(w, e);
-        else walk_draw(w, e - w->tree->node_count);
+        sample_draw(w, e);
     }
     h->pending_count = 0;
-    h->gave_up = h->serial;
+    sample_give_up(w);
 }
 
-// Once a frame, before most of its tests.
 static int is_worth_a_sample(const twophase *t)
 {
-    const occlusion_history *h = t->w->h;
-    const int is_proven = h->zone.tests >= LEDGER_TRIAL_TESTS && ledger_pays(&h->zone);
-    return !is_proven && h->phase == MOVERS_OPEN && h->tried != h->serial && h->pending_count > TRIAL_PENDING && t->steps_left > 2;
+    return t->w->h->phase == MOVERS_OPEN && t->steps_left > 2 && sample_is_due(t->w, t->w->h->pending_count);
 }
 
 static void go_on(twophase *t)
 {
     occlusion_history *h = t->w->h;
-    const int is_sample = h->tried == h->serial && h->sampled_step + 1 == t->w->visit->step;
-    if (is_sample && !sample_pays(t->w, h->gained_before)) {
+    if (sample_is_answered(t->w) && !sample_pays(t->w, h->tested_count, hidden_of_sample(t->w))) {
         give_up(t);
         return;
     }
@@ -275,7 +266,7 @@ static void ask_for_next_frame(occlusion_walk *w)
 
 static void end_frame(occlusion_walk *w)
 {
-    if (w->h->gave_up == w->h->serial) history_forget(w->h);
+    if (sample_gave_up(w)) history_forget(w->h);
     else {
         ask_for_next_frame(w);
         rest_count_drawn(w);

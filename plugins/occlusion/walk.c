@@ -58,10 +58,11 @@ void walk_begin(occlusion_walk *w)
     }
     h->counters.frames++;
     h->heap_count = h->pending_count = h->tested_count = 0;
-    h->mask_used = w->takes_candidates || visit->picture_count;
+    h->mask_used = w->takes_candidates || visit->picture_count || visit->clipped_count;
     if (w->takes_candidates) mask_all_but_candidates(w);
     else if (h->mask_used) memset(h->masked, 0, ((size_t)w->tree->item_count / 64 + 1) * sizeof(uint64_t));
     for (uint32_t i = 0; i < visit->picture_count; i++) mask_runs(w, visit->pictures[i].runs, visit->pictures[i].run_count);
+    for (uint32_t i = 0; i < visit->clipped_count; i++) mask_runs(w, visit->clipped[i].runs, visit->clipped[i].run_count);
 }
 
 // ---- Where boxes lie ----

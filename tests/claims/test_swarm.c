@@ -109,6 +109,7 @@ static void ten_thousand_movers_in_a_city_lose_no_pixel_and_grow_nothing(void **
     }
     check_chain(&w, "octree");
     check_chain(&w, "octree+occlusion");
+    check_chain(&w, "octree+occlusion[method=hiz]");
     swarm_close(&w);
 }
 

@@ -314,7 +314,7 @@ const char *fake_frame_cut(fake_viewer *v, const fake_view *view, uint32_t flags
     cull_run *candidates = must_alloc(items * sizeof *candidates);
     cull_view told = view->view;
     fake_step s = {.visit = {.view = &told, .volumes = view->volumes, .volume_count = view->volume_count, .scratch = v->scratch,
-                             .movers = v->movers, .mover_count = v->mover_count, .answers = v->answers},
+                             .movers = v->movers, .mover_count = v->mover_count, .answers = v->answers, .clipped = v->clipped, .clipped_count = v->clipped_count},
                    .batch = {.runs = v->runs, .tests = v->tests}};
     cull_progress progress = CULL_MORE;
     const char *fault = NULL;

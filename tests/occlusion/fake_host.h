@@ -49,6 +49,8 @@ typedef struct fake_viewer { // one query
     fake_late *late;
     uint8_t *drawn;    // by the zone's item, then movers
     uint8_t *allowed;  // the candidates; all where the chain has none
+    const cull_clipped *clipped; // of the culler before
+    uint32_t clipped_count;
     void *scratch;
     cull_mover movers[FAKE_MOVERS_MOST];
     double depth[FAKE_PIXELS];

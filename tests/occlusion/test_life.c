@@ -176,6 +176,50 @@ static void tells_why_and_how_much(void **state)
     hand_zone_free(&z);
 }
 
+static void expect_what_is_visible(fake_viewer *v, const fake_view *view)
+{
+    static uint8_t visible[100 + FAKE_MOVERS_MOST];
+    const char *fault = fake_frame(v, view, 0);
+    if (fault) fail_msg("%s", fault);
+    fake_truth(v, view, visible);
+    for (uint32_t i = 0; i < 100; i++) assert_true(!visible[i] || v->drawn[i]);
+}
+
+// Nothing is hidden from above: some of these frames are at rest.
+static void what_is_drawn_clipped_is_not_drawn_whole_and_comes_back_when_it_is_not(void **state)
+{
+    static const char *const methods[] = {"wait", "last", "twophase", "chc", "hiz"};
+    static const cull_run runs[] = {{10, 5}, {40, 1}};
+    static const cull_clipped clipped[2] = {{.runs = runs, .run_count = 1}, {.runs = runs, .run_count = 2}};
+    static fake_view view;
+    hand_zone z;
+    (void)state;
+    boxes_of(100, &z);
+    fake_view_make(&view, (cull_vec3){14, 40, -6}, 0, -1.2);
+    for (size_t m = 0; m < sizeof methods / sizeof *methods; m++) {
+        fake_culler c;
+        fake_viewer v;
+        assert_int_equal(fake_culler_open(&c, &z, methods[m], CHAIN_LENT, 0), CULL_OK);
+        fake_viewer_open(&v, &c);
+        for (int turn = 0; turn < 2; turn++) {
+            v.clipped = clipped;
+            v.clipped_count = 2;
+            memset(v.allowed + 10, 0, 5);
+            v.allowed[40] = 0;
+            for (int f = 0; f < 10; f++) expect_what_is_visible(&v, &view);
+            assert_true(v.drawn_count > 20);
+            const uint32_t without = v.drawn_count;
+            v.clipped_count = 0;
+            memset(v.allowed, 1, 100);
+            for (int f = 0; f < 10; f++) expect_what_is_visible(&v, &view);
+            assert_true(v.drawn_count > without);
+        }
+        fake_viewer_close(&v);
+        fake_culler_close(&c);
+    }
+    hand_zone_free(&z);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -184,6 +228,7 @@ int main(void)
         cmocka_unit_test(zones_of_odd_shapes_are_built_and_drawn),
         cmocka_unit_test(what_is_no_number_or_huge_is_drawn),
         cmocka_unit_test(tells_why_and_how_much),
+        cmocka_unit_test(what_is_drawn_clipped_is_not_drawn_whole_and_comes_back_when_it_is_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
