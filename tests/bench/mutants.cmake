@@ -75,13 +75,13 @@ if(TARGET plugin_bsp)
     "i < cell->opening_count; i++" "i < cell->opening_count; i += i % 8 == 1 ? 2u : 1u")
 endif()
 
-portcullis_mutant(octree shrinks-a-plane walk_body.h
+portcullis_mutant(octree shrinks-a-plane walk_segments_body.h
   "cull_block_planes(q->volumes, planes);" "cull_block_planes(q->volumes, planes); planes[0].limit += 0.5f;")
-portcullis_mutant(octree skips-a-leaf-in-61 walk_body.h
-  "s->visible[s->places[i]] = cull" "s->visible[s->places[i]] = s->leaves[i] % 61 == 0 ? 0 : cull")
+portcullis_mutant(octree skips-a-leaf-in-61 walk_segments_body.h
+  "s->visible[s->places[i]] = judge" "s->visible[s->places[i]] = s->leaves[i] % 61 == 0 ? 0 : judge")
 portcullis_mutant(octree drops-what-a-parent-cuts walk_body.h
   "out->cut &= out->touching;" "out->touching &= ~(out->cut & 0x80u); out->cut &= out->touching;")
-portcullis_mutant(octree forgets-the-last-of-a-leaf walk_body.h
+portcullis_mutant(octree forgets-the-last-of-a-leaf walk_segments_body.h
   "s->w.planes, s->planes[i]);" "s->w.planes, s->planes[i]) & ALL_ITEMS >> 1;")
 portcullis_mutant(octree keeps-boxes-too-small index.c
   "firsts_fill(b, l, children, out->firsts);" "firsts_fill(b, l, children, out->firsts); for (int i = 0; l == 2 && i < 16; i++) out->boxes[64 + i] = out->boxes[16 + i];")
