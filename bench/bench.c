@@ -180,8 +180,9 @@ static void close_row(run *b, bench_row *row, const strategy *s)
 
 uint32_t bench_warmup_views(const camera_path *path)
 {
-    static const char walk[] = "auto:walk:";
-    return path->count >= BENCH_WARMUP_WALK && strncmp(path->name, walk, sizeof walk - 1) == 0 ? BENCH_WARMUP_VIEWS : 0;
+    static const char walk[] = "auto:walk:", drive[] = "auto:drive:";
+    const int is_smooth = strncmp(path->name, walk, sizeof walk - 1) == 0 || strncmp(path->name, drive, sizeof drive - 1) == 0;
+    return path->count >= BENCH_WARMUP_WALK && is_smooth ? BENCH_WARMUP_VIEWS : 0;
 }
 
 // Each view's median over the passes, of cull_ns * cull_weight + gl_ms * gl_weight, into b->scratch; warm-up left out.

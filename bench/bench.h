@@ -37,6 +37,7 @@ typedef struct bench_request {
     bench_ids ids;
     bench_costs costs;
     bench_pictures pictures;
+    double frame_ms; // what a frame may take, as cullers are told (cull_costs.frame_ns); 0: nobody says
     const char *images; // folder for pictures, NULL: none
 } bench_request;
 
@@ -56,6 +57,8 @@ typedef struct bench_row {
     uint32_t pictures_measured, has_ssim; // views beside full geometry; 0: the next lines mean nothing. has_ssim 0: too small for it
     double psnr;                       // dB, of the mean squared error over all those views; at most PSNR_MOST_DB
     double ssim, flip, flip_p99, flip_max; // means of the views' means; the views' means' 99th percentile and largest
+    double popping, popping_p99, popping_max; // the same of what changes from view to view and not in full geometry: see popping.h
+    uint32_t popping_view, popping_views;     // the worst; how many follow another without a cut. 0: the line before means nothing
     uint64_t crack_pixels, crack_inner, crack_spills, crack_pixels_max; // over all views: see cracks.h
     uint64_t mover_pixels, mover_pixels_wrong; // over all views: where a mover shows in truth or picture, and in one alone
     uint32_t flip_view, crack_view;    // the worst of each
@@ -89,7 +92,7 @@ result bench_run(const bench_request *q, report *r, bench_result *out);
 void bench_result_free(bench_result *b);
 // 1 when a chain missed an item although it promises not to, or a strategy drew what it did not say.
 uint32_t bench_check_failed(const bench_row *row);
-// The first views of a long walk (auto:walk:200 or more), until a strategy with history has one: they are drawn and checked, and
+// The first views of a long walk or drive (auto:walk:200, auto:drive:200 or more), until a strategy with history has one: they are drawn and checked, and
 // left out of times and of means over pictures. 0 for all other paths.
 enum { BENCH_WARMUP_VIEWS = 60, BENCH_WARMUP_WALK = 200 };
 uint32_t bench_warmup_views(const camera_path *path);

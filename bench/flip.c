@@ -23,6 +23,15 @@ static float hunt_difference(const flip_colours *c, int p, int q) // of two pure
     return (float)(fabs(lab[0][0] - lab[1][0]) + hypot(lab[0][1] - lab[1][1], lab[0][2] - lab[1][2]));
 }
 
+static const flip_kernel *best_kernel(void)
+{
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f")) return &flip_kernel_avx512;
+    if (__builtin_cpu_supports("avx2")) return &flip_kernel_avx2;
+#endif
+    return &flip_kernel_plain;
+}
+
 static uint32_t tiles_in(uint32_t side_px)
 {
     return (side_px + FLIP_TILE_PX - 1) / FLIP_TILE_PX;
@@ -35,6 +44,7 @@ flip *flip_open(const flip_request *q, const allocator *memory)
     flip *f = memory_alloc_zeroed(memory, 1, sizeof *f);
     if (!f) return NULL;
     f->memory = memory;
+    f->kernel = best_kernel();
     f->tile_count = tiles_in(q->width_px) * tiles_in(q->height_px);
     f->references = memory_alloc(memory, f->tile_count, sizeof *f->references);
     f->reference_numbers = memory_alloc_zeroed(memory, f->tile_count, sizeof *f->reference_numbers);
@@ -112,9 +122,10 @@ void flip_keep_reference(flip *f, uint64_t number)
 static const flip_tile *reference_tile(flip *f, const uint8_t *rgba, const uint32_t corner[2])
 {
     const uint32_t at = corner[1] / FLIP_TILE_PX * tiles_in(f->width_px) + corner[0] / FLIP_TILE_PX;
-    if (f->number == 0 || f->reference_numbers[at] != f->number) flip_filter_tile(f, rgba, corner, &f->references[at]);
-    f->reference_numbers[at] = f->number;
-    return &f->references[at];
+    flip_tile *kept = f->number ? &f->references[at] : &f->scratch.other;
+    if (f->number == 0 || f->reference_numbers[at] != f->number) f->kernel->filter(f, &f->scratch, rgba, corner, kept);
+    if (f->number) f->reference_numbers[at] = f->number;
+    return kept;
 }
 
 double flip_compare(flip *f, const flip_pair *pair, float *map)
@@ -128,8 +139,8 @@ double flip_compare(flip *f, const flip_pair *pair, float *map)
             const extent seen = extent_of(f, corner, (uint32_t)f->reach), own = extent_of(f, corner, 0);
             if (!differs(f, pair, &seen)) continue;
             const flip_tile *reference = reference_tile(f, pair->reference, corner);
-            flip_filter_tile(f, pair->test, corner, &f->scratch.tile);
-            flip_compare_tile(&f->scratch, reference);
+            f->kernel->filter(f, &f->scratch, pair->test, corner, &f->scratch.tile);
+            f->kernel->compare(&f->scratch, reference);
             sum += add_tile(f, &own, map);
         }
     return sum / (double)pixels;

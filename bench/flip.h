@@ -25,7 +25,7 @@ typedef struct flip_pair { const uint8_t *reference, *test; } flip_pair;
 double flip_compare(flip *f, const flip_pair *pair, float *map);
 
 // While calls come with one number, other than 0, they have one reference: what was filtered of it is kept, and each
-// further picture takes three fifths of the time. 0, as it starts: nothing is kept.
+// further picture takes two thirds of the time. 0, as it starts: nothing is kept, and what was kept of a number stays.
 void flip_keep_reference(flip *f, uint64_t number);
 
 // A map as a picture for people: black over purple and orange to pale yellow; pixels * 4 bytes.

@@ -39,12 +39,26 @@ typedef struct flip_scratch {
     float luminance[FLIP_SIDE_MOST * FLIP_SIDE_MOST], red_green[FLIP_SIDE_MOST * FLIP_SIDE_MOST], blue_yellow[FLIP_SIDE_MOST * FLIP_SIDE_MOST];
     float across[7][FLIP_SIDE_MOST * FLIP_TILE_PX]; // filtered along rows
     float down[7][FLIP_TILE_PIXELS];                // and columns
-    flip_tile tile;                                 // of the test picture
+    flip_tile tile, other;                          // of the test picture; of a reference that is not kept
     float colour[FLIP_TILE_PIXELS], feature[FLIP_TILE_PIXELS]; // differences between the two
 } flip_scratch;
 
+// One body, compiled for each instruction set, chosen at run time; all give the same bits.
+typedef struct flip_kernel {
+    // The tile whose first pixel is `corner`.
+    void (*filter)(const flip *f, flip_scratch *s, const uint8_t *rgba, const uint32_t corner[2], flip_tile *out);
+    // scratch.tile with the reference, into scratch.colour and scratch.feature.
+    void (*compare)(flip_scratch *s, const flip_tile *reference);
+} flip_kernel;
+
+extern const flip_kernel flip_kernel_plain;
+#if defined(__x86_64__)
+extern const flip_kernel flip_kernel_avx2, flip_kernel_avx512; // only for a CPU that has them
+#endif
+
 struct flip {
     const allocator *memory;
+    const flip_kernel *kernel;
     uint32_t width_px, height_px;
     int32_t reach; // of the widest filter
     flip_filters filters;
@@ -60,10 +74,5 @@ struct flip {
 void flip_make_filters(double pixels_per_degree, flip_filters *out);
 int32_t flip_reach(const flip_filters *filters);
 void flip_make_colours(flip_colours *out);
-
-// The tile whose first pixel is `corner`.
-void flip_filter_tile(flip *f, const uint8_t *rgba, const uint32_t corner[2], flip_tile *out);
-// With scratch.tile, into scratch.colour and scratch.feature.
-void flip_compare_tile(flip_scratch *s, const flip_tile *reference);
 
 #endif

@@ -4,15 +4,18 @@
 
 #include "generate_land.h"
 
-enum { FLAGSHIP_KEY = 0x666c6167, WALK_VIEWS = 720, EYE = 165, OUTDOOR_EYES = 80, HILL_TREES = 7, WOOD_SPACING = 30 }; // metres from tree to tree, about
+#include <math.h>
+
+enum { FLAGSHIP_KEY = 0x666c6167, WALK_VIEWS = 1000, WALK_FROM = -160, WALK_TO = -50, EYE = 165, OUTDOOR_EYES = 80, HILL_TREES = 7, WOOD_SPACING = 20 }; // metres from tree to tree, about
+enum { FLAT_X = 45, FLAT_Z = 25, STREET_HIGH = 14, STREET_DEEP = -8 }; // metres: half of what is level, which is the zone of the street too
 
 static const house_site sites[FLAGSHIP_HOUSES] = {
-    {0, -650, -600, 0, HOUSE_TALL, HOUSE_CELLAR, HOUSE_DOOR_OPEN, "brick", "roof_tiles"},
-    {1, -2700, -600, 0, HOUSE_TALL, HOUSE_NO_CELLAR, HOUSE_DOOR_OPEN, "sandstone", "roof_slate_8"},
-    {2, 1400, -600, 0, HOUSE_LOW, HOUSE_NO_CELLAR, HOUSE_DOOR_OPEN, "plaster_wall_3", "roof_tiles"},
-    {3, -2700, 600, 1, HOUSE_LOW, HOUSE_NO_CELLAR, HOUSE_DOOR_OPEN, "brick_9", "roof_tiles"},
-    {4, -650, 600, 1, HOUSE_TALL, HOUSE_NO_CELLAR, HOUSE_DOOR_OPEN, "plaster_wall_11", "roof_slate_8"},
-    {5, 1400, 600, 1, HOUSE_TALL, HOUSE_NO_CELLAR, HOUSE_DOOR_SHUT, "sandstone", "roof_tiles"},
+    {0, -650, -600, 0, HOUSE_TALL, HOUSE_CELLAR, HOUSE_DOOR_OPEN, "brick", "roof_tiles", HOUSE_CHAINS_OF_ROOMS},
+    {1, -2700, -600, 0, HOUSE_TALL, HOUSE_NO_CELLAR, HOUSE_DOOR_OPEN, "sandstone", "roof_slate_8", HOUSE_CHAINS_OF_ROOMS},
+    {2, 1400, -600, 0, HOUSE_LOW, HOUSE_NO_CELLAR, HOUSE_DOOR_OPEN, "plaster_wall_3", "roof_tiles", HOUSE_CHAINS_OF_ROOMS},
+    {3, -2700, 600, 1, HOUSE_LOW, HOUSE_NO_CELLAR, HOUSE_DOOR_OPEN, "brick_9", "roof_tiles", HOUSE_CHAINS_OF_ROOMS},
+    {4, -650, 600, 1, HOUSE_TALL, HOUSE_NO_CELLAR, HOUSE_DOOR_OPEN, "plaster_wall_11", "roof_slate_8", HOUSE_CHAINS_OF_ROOMS},
+    {5, 1400, 600, 1, HOUSE_TALL, HOUSE_NO_CELLAR, HOUSE_DOOR_SHUT, "sandstone", "roof_tiles", HOUSE_CHAINS_OF_ROOMS},
 };
 
 const house_site *flagship_house(uint32_t number)
@@ -49,6 +52,17 @@ static void street_fill(obj_writer *w, const land *l, random_stream *r)
     }
 }
 
+static double walk_z(double x) // the way down to the street, both in metres
+{
+    return 2 + 0.375 * (WALK_TO - x);
+}
+
+static int is_on_the_way(double x, double z)
+{
+    const double clear = 7;
+    return x > WALK_FROM - clear && x < WALK_TO && fabs(z - walk_z(x)) < clear;
+}
+
 // Woods on the hills beyond, a tree a square of a grid.
 static void woods_fill(obj_writer *w, const land *l, random_stream *r)
 {
@@ -57,7 +71,7 @@ static void woods_fill(obj_writer *w, const land *l, random_stream *r)
     for (int32_t z = -half; z + WOOD_SPACING <= half; z += WOOD_SPACING)
         for (int32_t x = -half; x + WOOD_SPACING <= half; x += WOOD_SPACING) {
             const double at_x = x + WOOD_SPACING * random_unit(r), at_z = z + WOOD_SPACING * random_unit(r);
-            if (at_x > -near && at_x < near && at_z > -near && at_z < near) continue;
+            if ((at_x > -near && at_x < near && at_z > -near && at_z < near) || is_on_the_way(at_x, at_z)) continue;
             const spot foot = {at_x, land_height(l, at_x, at_z), at_z};
             obj_numbered_object(w, "wood", number++);
             if (random_below(r, 3)) model_conifer(w, foot, 7 + 9 * random_unit(r), r);
@@ -122,13 +136,24 @@ static void walk_cellar(path_line *l, const house_site *h)
     for (size_t i = 0; i < sizeof at / sizeof *at; ++i) walk_to(l, h, at[i][0], at[i][1], at[i][2]);
 }
 
-static void walk_make(path_line *l)
+// Over the hills, where there are woods out of them.
+static void walk_open(path_line *l, const land *ground)
+{
+    const int32_t step = 5;
+    for (int32_t x = ground->half > LAND_NEAR ? WALK_FROM : -130; x <= WALK_TO; x += step) {
+        const double z = walk_z(x);
+        path_to(l, (place){x * METRE, (int32_t)floor(land_height(ground, x, z) * METRE) + EYE * CENTIMETRE, (int32_t)floor(z * METRE)});
+    }
+}
+
+static void walk_make(path_line *l, const land *ground)
 {
     const house_site *h = flagship_house(FLAGSHIP_CELLAR_HOUSE);
     static const int16_t up[][3] = { // through the hall and up
         {800, 20, -265},  {650, 20, -265},  {575, 20, -330},  {575, 20, -500},  {575, 20, -600},  {575, 160, -810},
         {600, 160, -890}, {700, 160, -890}, {725, 160, -800}, {725, 320, -590}, {725, 320, -500}, {725, 320, -320},
         {650, 320, -265}, {500, 320, -265}, {370, 320, -250}, {370, 310, -130}, {370, 305, -15},  {370, 305, 150}, {420, 340, 500}};
+    walk_open(l, ground);
     path_to(l, (place){-36 * METRE, EYE * CENTIMETRE, 2 * METRE});
     path_to(l, (place){-20 * METRE, EYE * CENTIMETRE, METRE});
     path_to(l, (place){-6 * METRE, EYE * CENTIMETRE, 0});
@@ -193,12 +218,17 @@ static void outdoor_eyes(const zoned_scene *z, json_writer *j)
 void zoned_flagship(zoned_scene *z)
 {
     random_stream plans = random_make(z->seed, FLAGSHIP_KEY), things = random_make(z->seed, FLAGSHIP_KEY + 2);
-    land ground = {.half = (int32_t)z->size * METRE, .flat_x = 45 * METRE, .flat_z = 25 * METRE, .road_half = 35 * METRE / 10, .pavement_half = 6 * METRE, .road_end = 385 * METRE / 10,
-                    .hole_count = FLAGSHIP_HOUSES};
+    random_stream riches = random_make(z->seed, FLAGSHIP_KEY + 3);
+    const int is_small = z->size * METRE <= LAND_NEAR; // for quick tests: no woods, and rooms with little in them
+    land ground = {.half = (int32_t)z->size * METRE, .flat_x = FLAT_X * METRE, .flat_z = FLAT_Z * METRE, .hole_count = FLAGSHIP_HOUSES,
+                   .road_half = 35 * METRE / 10, .pavement_half = 6 * METRE, .road_end = 385 * METRE / 10};
     for (uint32_t i = 0; i < FLAGSHIP_HOUSES; ++i) {
         house_plan(&sites[i], &z->plan, &plans);
         ground.holes[i] = house_footprint(&sites[i]);
     }
+    z->plan.outside_chain = "imagecache+portal";
+    z->plan.quarter = (plan_quarter){.name = "street", .chain = "octree+portal+occlusion[method=hiz]",
+                                     .zone = {{-FLAT_X * METRE, STREET_DEEP * METRE, -FLAT_Z * METRE}, {FLAT_X * METRE, STREET_HIGH * METRE, FLAT_Z * METRE}}};
     if (!plan_index(&z->plan)) return;
     obj_writer w = obj_open(&z->geometry, z->memory);
     land_write(&w, &ground);
@@ -206,14 +236,15 @@ void zoned_flagship(zoned_scene *z)
     for (uint32_t i = 0; i < FLAGSHIP_HOUSES; ++i) {
         house_write(&sites[i], &w, &z->plan, room, house_room_count(&sites[i]));
         house_fill(&sites[i], &w, &z->plan, &things);
+        if (!is_small) house_furnish(&sites[i], &w, &z->plan, &riches);
         room += house_room_count(&sites[i]);
     }
     street_fill(&w, &ground, &things);
     square_write(&w);
     hedge_write(&w);
-    if (ground.half > LAND_NEAR) woods_fill(&w, &ground, &things);
+    if (!is_small) woods_fill(&w, &ground, &things);
     obj_close(&w);
-    walk_make(&z->walk);
+    walk_make(&z->walk, &ground);
     z->walk_views = WALK_VIEWS;
     z->tour_low = 80 * CENTIMETRE;
     z->tour_high = 190 * CENTIMETRE;

@@ -193,6 +193,18 @@ static block zone_of(const house_site *h, const int16_t b[6])
 static const cuts heights = {.at = {FLOOR * CENTIMETRE, 110 * CENTIMETRE, 230 * CENTIMETRE, UPPER * CENTIMETRE, 410 * CENTIMETRE, 530 * CENTIMETRE},
                              .count = 6};
 
+// Rooms of few walls and next to no furniture have nothing that a tree of walls could find.
+static const char *room_chain(uint32_t row)
+{
+    return row == R_BATH || row == R_LANDING || row == R_PANTRY || row == R_LIFT ? "frustum+portal" : "bsp+portal";
+}
+
+static const char *drawn_chain(random_stream *r)
+{
+    static const char *const chains[4] = {"frustum", "none", "brute", NULL};
+    return chains[random_below(r, 4)];
+}
+
 static void rooms_add(const house_site *h, plan *p, uint32_t numbers[ROOM_ROWS], random_stream *r)
 {
     static const char *const looks[LOOKS][PLAN_SIDES] = {
@@ -203,12 +215,11 @@ static void rooms_add(const house_site *h, plan *p, uint32_t numbers[ROOM_ROWS],
         {"brick_9", "brick_9", "floor_stone", "ceiling", "brick_9", "brick_9"},
         {"sandstone", "sandstone", "floor_stone", "sandstone", "sandstone", "sandstone"},
         {"concrete", "concrete", "metal_floor", "concrete", "concrete", "concrete"}};
-    static const char *const chains[4] = {"frustum", "none", "brute", NULL};
     for (uint32_t i = 0; i < ROOM_ROWS; ++i) {
         if (!is_used(h, i)) continue;
         numbers[i] = plan_add_room(p, &(plan_room){.kind = rooms[i].kind, .number = h->number, .air = box_of(h, rooms[i].air),
                                                    .zone = zone_of(h, rooms[i].zone), .materials = looks[rooms[i].look], .frame = "frame_stone",
-                                                   .chain = chains[random_below(r, 4)], .heights = &heights});
+                                                   .chain = h->chains == HOUSE_CHAINS_DRAWN ? drawn_chain(r) : room_chain(i), .heights = &heights});
     }
 }
 

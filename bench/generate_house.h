@@ -14,6 +14,8 @@ typedef enum house_storeys { HOUSE_LOW, HOUSE_TALL } house_storeys;
 typedef enum house_cellar { HOUSE_NO_CELLAR, HOUSE_CELLAR } house_cellar;
 typedef enum house_door { HOUSE_DOOR_OPEN, HOUSE_DOOR_SHUT } house_door;
 
+typedef enum house_chains { HOUSE_CHAINS_DRAWN, HOUSE_CHAINS_OF_ROOMS } house_chains; // by lot, for tests; what suits each room
+
 typedef struct house_site {
     uint32_t number;
     int32_t x, z; // of the front's left corner, seen in the plan, centimetres
@@ -22,6 +24,7 @@ typedef struct house_site {
     house_cellar cellar;
     house_door front_door;
     const char *facade, *roof; // materials
+    house_chains chains;
 } house_site;
 
 typedef struct local_place { int32_t x, y, z; } local_place; // centimetres
@@ -32,6 +35,7 @@ spot house_spot(const house_site *h, local_place p);
 void house_plan(const house_site *h, plan *p, random_stream *r); // before plan_index
 void house_write(const house_site *h, obj_writer *w, plan *p, uint32_t first_room, uint32_t room_count); // window bars become obstacles
 void house_fill(const house_site *h, obj_writer *w, plan *p, random_stream *r); // furniture and exhibits: obstacles too
+void house_furnish(const house_site *h, obj_writer *w, plan *p, random_stream *r); // many more things, small and of many polygons
 uint32_t house_room_count(const house_site *h);
 block house_footprint(const house_site *h); // the hole that it needs in the ground: to the middle of its outer walls
 

@@ -6,7 +6,7 @@
 
 enum { HOUSE_KEY = 0x686f7573, EYE = 165 };
 
-static const house_site site = {0, -650, 500, 0, HOUSE_TALL, HOUSE_NO_CELLAR, HOUSE_DOOR_OPEN, "brick", "roof_tiles"};
+static const house_site site = {0, -650, 500, 0, HOUSE_TALL, HOUSE_NO_CELLAR, HOUSE_DOOR_OPEN, "brick", "roof_tiles", HOUSE_CHAINS_DRAWN};
 
 static void walk_make(path_line *l)
 {

@@ -95,36 +95,93 @@ void json_box(text_file *out, const block *b, const char *material)
 
 static void zone_name(text_file *out, const plan *p, uint32_t room)
 {
-    if (room == PLAN_OUTSIDE) json_numbered(out, "outside", PLAN_OUTSIDE);
+    if (room == PLAN_OUTSIDE) json_numbered(out, p->quarter.name ? p->quarter.name : "outside", PLAN_OUTSIDE);
     else json_numbered(out, plan_room_at(p, room)->kind, plan_room_at(p, room)->number);
+}
+
+static void add_text(text_file *out, const char *key, const char *text)
+{
+    text_add(out, ", \"");
+    text_add(out, key);
+    text_add(out, "\": \"");
+    text_add(out, text);
+    text_add(out, "\"");
+}
+
+static void add_box(text_file *out, const block *b)
+{
+    text_add(out, ", \"box\": [");
+    json_place(out, b->min);
+    text_add(out, ", ");
+    json_place(out, b->max);
+    text_add(out, "]");
+}
+
+static void open_zones(json_writer *j, const plan *p)
+{
+    json_item(j);
+    text_add(j->out, "{\"name\": \"outside\"");
+    add_text(j->out, "chain", p->outside_chain ? p->outside_chain : "frustum");
+    text_add(j->out, "}");
+    if (!p->quarter.name) return;
+    json_item(j);
+    text_add(j->out, "{\"name\": ");
+    zone_name(j->out, p, PLAN_OUTSIDE);
+    add_box(j->out, &p->quarter.zone);
+    add_text(j->out, "in", "outside");
+    add_text(j->out, "chain", p->quarter.chain);
+    text_add(j->out, "}");
 }
 
 void json_zones(json_writer *j, const plan *p)
 {
     json_list(j, "zones");
-    if (p->has_outside) {
-        json_item(j);
-        text_add(j->out, "{\"name\": \"outside\", \"chain\": \"frustum\"}");
-    }
+    if (p->has_outside) open_zones(j, p);
     for (uint32_t i = 0; i < plan_room_count(p) && !j->out->failed; ++i) {
         const plan_room *r = plan_room_at(p, i);
         json_item(j);
         text_add(j->out, "{\"name\": ");
         zone_name(j->out, p, i);
-        text_add(j->out, ", \"box\": [");
-        json_place(j->out, r->zone.min);
-        text_add(j->out, ", ");
-        json_place(j->out, r->zone.max);
-        text_add(j->out, "]");
-        if (p->has_outside) text_add(j->out, ", \"in\": \"outside\"");
-        if (r->chain) {
-            text_add(j->out, ", \"chain\": \"");
-            text_add(j->out, r->chain);
-            text_add(j->out, "\"");
-        }
+        add_box(j->out, &r->zone);
+        if (p->has_outside) add_text(j->out, "in", p->quarter.name ? p->quarter.name : "outside");
+        if (r->chain) add_text(j->out, "chain", r->chain);
         text_add(j->out, "}");
     }
     json_list_end(j);
+}
+
+// ---- Portals ----
+
+static void corners_write(text_file *out, const place corners[4])
+{
+    text_add(out, "], \"points\": [");
+    for (int k = 0; k < 4; ++k) {
+        if (k) text_add(out, ", ");
+        json_place(out, corners[k]);
+    }
+    text_add(out, "]");
+}
+
+// Counterclockwise seen from within.
+static void quarter_portals(json_writer *j, const plan_quarter *q)
+{
+    enum { FACES = 5 };
+    const place a = {q->zone.min.x, q->ground, q->zone.min.z}, b = q->zone.max;
+    const place faces[FACES][4] = {{{a.x, a.y, a.z}, {a.x, b.y, a.z}, {a.x, b.y, b.z}, {a.x, a.y, b.z}},
+                                   {{b.x, a.y, a.z}, {b.x, a.y, b.z}, {b.x, b.y, b.z}, {b.x, b.y, a.z}},
+                                   {{a.x, a.y, a.z}, {b.x, a.y, a.z}, {b.x, b.y, a.z}, {a.x, b.y, a.z}},
+                                   {{a.x, a.y, b.z}, {a.x, b.y, b.z}, {b.x, b.y, b.z}, {b.x, a.y, b.z}},
+                                   {{a.x, b.y, a.z}, {b.x, b.y, a.z}, {b.x, b.y, b.z}, {a.x, b.y, b.z}}};
+    for (uint32_t i = 0; i < FACES; ++i) {
+        json_item(j);
+        text_add(j->out, "{\"name\": ");
+        json_numbered(j->out, "edge", i);
+        text_add(j->out, ", \"zones\": [");
+        json_numbered(j->out, q->name, PLAN_OUTSIDE);
+        text_add(j->out, ", \"outside\"");
+        corners_write(j->out, faces[i]);
+        text_add(j->out, "}");
+    }
 }
 
 void json_portals(json_writer *j, const plan *p)
@@ -141,18 +198,14 @@ void json_portals(json_writer *j, const plan *p)
         zone_name(j->out, p, h->rooms[0]);
         text_add(j->out, ", ");
         zone_name(j->out, p, h->rooms[1]);
-        text_add(j->out, "], \"points\": [");
-        for (int k = 0; k < 4; ++k) {
-            if (k) text_add(j->out, ", ");
-            json_place(j->out, corners[k]);
-        }
-        text_add(j->out, "]");
+        corners_write(j->out, corners);
         if (h->door != PLAN_GAP) {
             text_add(j->out, ", \"door\": ");
             json_numbered(j->out, "door", i);
         }
         text_add(j->out, "}");
     }
+    if (p->quarter.name) quarter_portals(j, &p->quarter);
     json_list_end(j);
 }
 

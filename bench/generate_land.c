@@ -23,13 +23,21 @@ static double beyond(double at, double half) // metres outside of what is level
     return fabs(at) > half ? fabs(at) - half : 0;
 }
 
+// A valley: beyond what is near the ground rises to all sides, steeper and steeper, so that what stands there is seen over what is nearer.
+static double slopes_height(double x, double z)
+{
+    const double slope = 0.2, near_m = (double)LAND_NEAR / METRE, out_x = beyond(x, near_m), out_z = beyond(z, near_m);
+    const double out = sqrt(out_x * out_x + out_z * out_z);
+    return slope * out * out / (out + near_m);
+}
+
 double land_height(const land *l, double x, double z)
 {
     const double rise_m = 75, hill_m = 5;
     const double out_x = beyond(x, (double)l->flat_x / METRE), out_z = beyond(z, (double)l->flat_z / METRE);
     const double t = fmin(1, sqrt(out_x * out_x + out_z * out_z) / rise_m), fade = t * t * (3 - 2 * t);
     const double wave = turn_sine(x / 83 + z / 211) + turn_sine(z / 67 - x / 157) + 0.6 * turn_sine(x / 41 + z / 53);
-    return fade * (hill_m * wave + hill_m);
+    return fade * (hill_m * wave + hill_m) + slopes_height(x, z);
 }
 
 static place ground_place(const land *l, int32_t x, int32_t z)

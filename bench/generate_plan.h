@@ -38,6 +38,14 @@ typedef struct plan_hole {
     const char *leaf;    // its material
 } plan_hole;
 
+// A part of the open: all rooms lie in it, and what is PLAN_OUTSIDE of them is it. Its top, and its sides from the ground up, are portals to "outside".
+typedef struct plan_quarter {
+    const char *name; // NULL: there is none
+    const char *chain;
+    block zone;
+    int32_t ground; // nothing is seen through its sides below that height
+} plan_quarter;
+
 typedef struct plan {
     buffer rooms, holes; // plan_room, plan_hole
     buffer ways;         // uint32_t, by plan_index: 2 * hole + side, room by room
@@ -45,6 +53,8 @@ typedef struct plan {
     buffer obstacles;    // block: where no eye of a tour may be
     int failed;          // out of memory, now or before
     int has_outside;     // a zone "outside" that all rooms lie in
+    const char *outside_chain; // NULL: frustum
+    plan_quarter quarter;
 } plan;
 
 plan plan_open(const allocator *memory);

@@ -50,7 +50,7 @@ static json_t *context_of(const bench_result *b, const bench_request *q, const b
     gethostname(host, sizeof host - 1);
     cpu_model(model, sizeof model);
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)q->scene->hash);
-    return json_pack("{s:s, s:o, s:i, s:o, s:o, s:s, s:s, s:s, s:o, s:o, s:s, s:i, s:i, s:i, s:i, s:i, s:i, s:i, s:o, s:i, s:i}", "date", date, "host_name",
+    return json_pack("{s:s, s:o, s:i, s:o, s:o, s:s, s:s, s:s, s:o, s:o, s:s, s:i, s:i, s:i, s:i, s:i, s:f, s:i, s:i, s:o, s:i, s:i}", "date", date, "host_name",
                      json_text(host), "num_cpus", (int)sysconf(_SC_NPROCESSORS_ONLN), "cpu_model", json_text(model), "load_avg", load_average(),
                      "library_version", PORTCULLIS_VERSION, "library_build_type",
 #ifdef NDEBUG
@@ -60,7 +60,7 @@ static json_t *context_of(const bench_result *b, const bench_request *q, const b
 #endif
                      "commit", PORTCULLIS_COMMIT, "gl_renderer", json_text(b->gl_used ? b->gl_name : "none"), "scene", json_text(labels->scene),
                      "scene_hash", hash, "width_px", (int)q->width_px, "height_px", (int)q->height_px, "samples", (int)q->samples,
-                     "repeat", (int)q->repeat, "query_latency", (int)q->query_latency, "zones", (int)b->zones, "portals", (int)b->portals,
+                     "repeat", (int)q->repeat, "query_latency", (int)q->query_latency, "frame_ms", q->frame_ms, "zones", (int)b->zones, "portals", (int)b->portals,
                      "path", json_text(labels->path), "warmup_views", (int)bench_warmup_views(q->path), "json_schema_version", 1);
 }
 
@@ -116,6 +116,7 @@ json_t *bench_json_entry(const bench_result *b, const bench_request *q, const be
         {"faults", (double)row->faults}, {"plugins_opened", b->plugins_opened}, {"indices_built", row->indices_built}, {"gl_used", b->gl_used}};
     const counter of_gl[] = {
         {"gl_ms", row->gl_ms}, {"total_ms", row->total_ms}, {"total_ms_p95", row->total_ms_p95}, {"total_ms_p99", row->total_ms_p99},
+        {"total_ms_p99_to_p50", ratio_by(row->total_ms > 0 ? row->total_ms_p99 / row->total_ms : 0, row->total_ms)},
         {"draw_calls", row->draw_calls}, {"state_changes", row->state_changes}};
     const counter of_truth[] = {
         {"polygons_visible", row->polygons_visible}, {"polygons_items", row->polygons_items}, {"items_visible", row->items_visible},
@@ -130,6 +131,9 @@ json_t *bench_json_entry(const bench_result *b, const bench_request *q, const be
         {"psnr", row->psnr}, {"ssim", row->has_ssim ? row->ssim : NAN}, {"flip", row->flip}, {"flip_p99", row->flip_p99}, {"flip_max", row->flip_max},
         {"flip_view", row->flip_view}, {"crack_pixels", (double)row->crack_pixels}, {"crack_inner", (double)row->crack_inner},
         {"crack_spills", (double)row->crack_spills}, {"crack_view", row->crack_view},
+        {"popping", ratio_by(row->popping, row->popping_views)}, {"popping_p99", ratio_by(row->popping_p99, row->popping_views)},
+        {"popping_max", ratio_by(row->popping_max, row->popping_views)}, {"popping_view", ratio_by(row->popping_view, row->popping_views)},
+        {"popping_views", row->popping_views},
         {"mover_pixels", (double)row->mover_pixels}, {"mover_pixels_wrong", (double)row->mover_pixels_wrong}, {"pictures_measured", row->pictures_measured}};
     const counter of_movers[] = {{"mover_update_ns", ratio_by(row->mover_update_ns, row->mover_update_ns)}};
     const counter of_swaps[] = {{"swap_ms", ratio_by(row->swap_ms, (double)row->swaps)}};

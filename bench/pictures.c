@@ -1,48 +1,13 @@
 // Pictures of strategies beside full geometry: see pictures.h.
 // SPDX-License-Identifier: MIT
 // Invariant: the strategies of a group see the same view before any sees the next, each through its own world, layout and slots.
-#include "pictures.h"
+// What is drawn here a worker compares, one picture behind.
+#include "pictures_parts.h"
 
-#include "cracks.h"
 #include "images.h"
-#include "similarity.h"
 #include "statistics.h"
 
 #include <string.h>
-
-typedef struct picture { // top row first; depths: bottom row first
-    uint8_t *rgba;
-    float *depths;
-} picture;
-
-typedef struct worst_view { // copies, where images are wanted: history can't be drawn again
-    uint8_t *truth, *shown, *heat;
-} worst_view;
-
-typedef struct sums { // of one strategy
-    double squared_error, ssim;
-    double *flips; // by view that counts
-    uint32_t views;
-    crack_counts cracks;
-    worst_view worst;
-} sums;
-
-typedef struct pictures {
-    const pictures_request *q;
-    report *r;
-    const allocator *memory;
-    size_t pixels;
-    render_layout *layout; // all items, in the scene's order
-    uint32_t *items;
-    flip *flip;
-    similarity *similarity; // NULL: too small a picture for a window
-    picture truth, shown;
-    float *fronts; // depths of what shows its front; NULL: no strategy is judged by that
-    float *movers; // depths of movers alone; NULL: there are none
-    float *map;
-    uint8_t *marks;
-    sums *sums; // by strategy
-} pictures;
 
 int pictures_wanted(const bench_request *q, const strategy *s)
 {
@@ -65,13 +30,16 @@ static result open_layout(pictures *p)
 static int open_sums(pictures *p, uint32_t k)
 {
     const bench_request *q = p->q->bench;
-    sums *s = &p->sums[k];
+    picture_sums *s = &p->sums[k];
     if (!pictures_wanted(q, &p->q->strategies[k])) return 1;
     s->flips = memory_alloc_zeroed(p->memory, q->path->count, sizeof *s->flips);
-    if (!q->images) return s->flips != NULL;
+    s->poppings = memory_alloc_zeroed(p->memory, q->path->count, sizeof *s->poppings);
+    s->before = memory_alloc(p->memory, p->pixels, 4);
+    if (!s->flips || !s->poppings || !s->before) return 0;
+    if (!q->images) return 1;
     s->worst = (worst_view){memory_alloc_zeroed(p->memory, p->pixels, 4), memory_alloc_zeroed(p->memory, p->pixels, 4),
                             memory_alloc_zeroed(p->memory, p->pixels, 4)};
-    return s->flips && s->worst.truth && s->worst.shown && s->worst.heat;
+    return s->worst.truth && s->worst.shown && s->worst.heat;
 }
 
 static int wants_fronts(const pictures *p)
@@ -81,46 +49,85 @@ static int wants_fronts(const pictures *p)
     return 0;
 }
 
-static int open_pictures(pictures *p)
+static int open_picture(const pictures *p, picture *out)
+{
+    *out = (picture){memory_alloc(p->memory, p->pixels, 4), memory_alloc(p->memory, p->pixels, sizeof(float))};
+    return out->rgba && out->depths;
+}
+
+static int open_rings(pictures *p)
+{
+    const int has_movers = p->q->bench->scene->mover_count > 0, has_fronts = wants_fronts(p);
+    for (int i = 0; i < PICTURES_JOBS; ++i)
+        if (!open_picture(p, &p->jobs[i].shown)) return 0;
+    for (int i = 0; i < PICTURES_TRUTHS; ++i) {
+        truth_picture *t = &p->truths[i];
+        if (!open_picture(p, &t->all)) return 0;
+        if (has_movers) t->movers = memory_alloc(p->memory, p->pixels, sizeof *t->movers);
+        if (has_fronts) t->fronts = memory_alloc(p->memory, p->pixels, sizeof *t->fronts);
+        if ((has_movers && !t->movers) || (has_fronts && !t->fronts)) return 0;
+    }
+    return 1;
+}
+
+static int open_metrics(pictures *p)
 {
     const bench_request *q = p->q->bench;
     const flip_request of_flip = {q->width_px, q->height_px, FLIP_PIXELS_PER_DEGREE};
-    p->sums = memory_alloc_zeroed(p->memory, q->strategy_count, sizeof *p->sums);
-    for (uint32_t k = 0; p->sums && k < q->strategy_count; ++k)
-        if (!open_sums(p, k)) return 0;
-    p->truth = (picture){memory_alloc(p->memory, p->pixels, 4), memory_alloc(p->memory, p->pixels, sizeof(float))};
-    p->shown = (picture){memory_alloc(p->memory, p->pixels, 4), memory_alloc(p->memory, p->pixels, sizeof(float))};
+    const int has_window = q->width_px >= SSIM_WINDOW_PX && q->height_px >= SSIM_WINDOW_PX;
+    p->flip = flip_open(&of_flip, p->memory);
+    if (has_window) p->similarity = similarity_open(&(similarity_size){q->width_px, q->height_px}, p->memory);
     p->map = memory_alloc(p->memory, p->pixels, sizeof *p->map);
     p->marks = memory_alloc(p->memory, p->pixels, 1);
-    p->flip = flip_open(&of_flip, p->memory);
-    const int has_window = q->width_px >= SSIM_WINDOW_PX && q->height_px >= SSIM_WINDOW_PX;
-    if (has_window) p->similarity = similarity_open(&(similarity_size){q->width_px, q->height_px}, p->memory);
-    const int has_pictures = p->truth.rgba && p->truth.depths && p->shown.rgba && p->shown.depths && p->map && p->marks;
-    if (!p->sums || !has_pictures || !p->flip || (has_window && !p->similarity)) return 0;
-    const int has_movers = q->scene->mover_count > 0, has_fronts = wants_fronts(p);
-    if (has_movers) p->movers = memory_alloc(p->memory, p->pixels, sizeof *p->movers);
-    if (has_fronts) p->fronts = memory_alloc(p->memory, p->pixels, sizeof *p->fronts);
-    return (!has_movers || p->movers) && (!has_fronts || p->fronts);
+    p->expected = memory_alloc(p->memory, p->pixels, 4);
+    p->from = memory_alloc(p->memory, p->pixels, sizeof *p->from);
+    return p->flip && (!has_window || p->similarity) && p->map && p->marks && p->expected && p->from;
+}
+
+static int open_pictures(pictures *p)
+{
+    const bench_request *q = p->q->bench;
+    p->sums = memory_alloc_zeroed(p->memory, q->strategy_count, sizeof *p->sums);
+    if (!p->sums) return 0;
+    for (uint32_t k = 0; k < q->strategy_count; ++k)
+        if (!open_sums(p, k)) return 0;
+    if (!open_rings(p) || !open_metrics(p)) return 0;
+    p->worker = worker_open(&(worker_request){pictures_compare, p}, p->memory);
+    return p->worker != NULL;
+}
+
+static void close_picture(const pictures *p, picture *s)
+{
+    memory_free(p->memory, s->rgba, p->pixels, 4);
+    memory_free(p->memory, s->depths, p->pixels, sizeof(float));
+}
+
+static void close_sums(const pictures *p, picture_sums *s)
+{
+    memory_free(p->memory, s->flips, p->q->bench->path->count, sizeof(double));
+    memory_free(p->memory, s->poppings, p->q->bench->path->count, sizeof(double));
+    memory_free(p->memory, s->before, p->pixels, 4);
+    memory_free(p->memory, s->worst.truth, p->pixels, 4);
+    memory_free(p->memory, s->worst.shown, p->pixels, 4);
+    memory_free(p->memory, s->worst.heat, p->pixels, 4);
 }
 
 static void close_all(pictures *p)
 {
     const bench_request *q = p->q->bench;
-    for (uint32_t k = 0; p->sums && k < q->strategy_count; ++k) {
-        memory_free(p->memory, p->sums[k].flips, q->path->count, sizeof(double));
-        memory_free(p->memory, p->sums[k].worst.truth, p->pixels, 4);
-        memory_free(p->memory, p->sums[k].worst.shown, p->pixels, 4);
-        memory_free(p->memory, p->sums[k].worst.heat, p->pixels, 4);
-    }
+    worker_close(p->worker);
+    for (uint32_t k = 0; p->sums && k < q->strategy_count; ++k) close_sums(p, &p->sums[k]);
     memory_free(p->memory, p->sums, q->strategy_count, sizeof *p->sums);
-    memory_free(p->memory, p->truth.rgba, p->pixels, 4);
-    memory_free(p->memory, p->truth.depths, p->pixels, sizeof(float));
-    memory_free(p->memory, p->shown.rgba, p->pixels, 4);
-    memory_free(p->memory, p->shown.depths, p->pixels, sizeof(float));
-    memory_free(p->memory, p->fronts, p->pixels, sizeof(float));
-    memory_free(p->memory, p->movers, p->pixels, sizeof(float));
-    memory_free(p->memory, p->map, p->pixels, sizeof(float));
+    for (int i = 0; i < PICTURES_JOBS; ++i) close_picture(p, &p->jobs[i].shown);
+    for (int i = 0; i < PICTURES_TRUTHS; ++i) {
+        close_picture(p, &p->truths[i].all);
+        memory_free(p->memory, p->truths[i].fronts, p->pixels, sizeof(float));
+        memory_free(p->memory, p->truths[i].movers, p->pixels, sizeof(float));
+    }
+    memory_free(p->memory, p->map, p->pixels, sizeof *p->map);
     memory_free(p->memory, p->marks, p->pixels, 1);
+    memory_free(p->memory, p->expected, p->pixels, 4);
+    memory_free(p->memory, p->from, p->pixels, sizeof *p->from);
     flip_close(p->flip);
     similarity_close(p->similarity);
     render_layout_close(p->layout);
@@ -151,84 +158,51 @@ static result read_picture(pictures *p, picture *out)
     return done == RESULT_OK ? renderer_read_depths(p->q->g, out->depths, p->r) : done;
 }
 
+static truth_picture *truth_of(pictures *p, uint32_t view)
+{
+    return &p->truths[view % PICTURES_TRUTHS];
+}
+
 static result draw_truth(pictures *p, uint32_t view)
 {
-    motion_show(p->q->motion, view, p->q->g);
+    truth_picture *t = truth_of(p, view);
     result done = RESULT_OK;
-    if (p->fronts) done = draw(p, view, DRAW_FRONTS);
-    if (p->fronts && done == RESULT_OK) done = renderer_read_depths(p->q->g, p->fronts, p->r);
-    if (p->movers && done == RESULT_OK) done = draw(p, view, DRAW_MOVERS);
-    if (p->movers && done == RESULT_OK) done = renderer_read_depths(p->q->g, p->movers, p->r);
+    worker_wait(p->worker, t->job);
+    t->camera = &p->q->bench->path->cameras[view];
+    motion_show(p->q->motion, view, p->q->g);
+    if (t->fronts) done = draw(p, view, DRAW_FRONTS);
+    if (t->fronts && done == RESULT_OK) done = renderer_read_depths(p->q->g, t->fronts, p->r);
+    if (t->movers && done == RESULT_OK) done = draw(p, view, DRAW_MOVERS);
+    if (t->movers && done == RESULT_OK) done = renderer_read_depths(p->q->g, t->movers, p->r);
     if (done == RESULT_OK) done = draw(p, view, DRAW_ALL);
-    return done == RESULT_OK ? read_picture(p, &p->truth) : done;
+    return done == RESULT_OK ? read_picture(p, &t->all) : done;
 }
 
-static void keep_worst(pictures *p, sums *s)
+// The worker compares while the next is drawn.
+static void give(pictures *p, picture_job *j, uint32_t view, uint32_t k)
 {
-    const uint32_t width = p->q->bench->width_px, height = p->q->bench->height_px;
-    memcpy(s->worst.truth, p->truth.rgba, p->pixels * 4);
-    memcpy(s->worst.shown, p->shown.rgba, p->pixels * 4);
-    flip_heat(p->map, p->pixels, s->worst.heat);
-    for (uint32_t y = 0; y < height; ++y)
-        for (uint32_t x = 0; x < width; ++x) {
-            uint8_t *pixel = s->worst.heat + ((size_t)y * width + x) * 4;
-            if (!p->marks[(size_t)(height - 1 - y) * width + x]) continue;
-            pixel[0] = 0; // a crack: cyan, which the heat never is
-            pixel[1] = pixel[2] = 255;
-        }
-}
-
-static void count_cracks(pictures *p, uint32_t view, uint32_t k)
-{
-    const bench_request *q = p->q->bench;
-    const float *must = p->q->strategies[k].walls == WALLS_BOTH_SIDES ? p->truth.depths : p->fronts;
-    const crack_pictures cracks = {p->truth.depths, must, p->shown.depths, q->width_px, q->height_px};
-    const crack_counts c = cracks_count(&cracks, p->marks);
-    bench_row *row = &p->q->rows[k];
-    if (c.holes + c.spills > row->crack_pixels_max) {
-        row->crack_pixels_max = c.holes + c.spills;
-        row->crack_view = view;
-    }
-    p->sums[k].cracks.holes += c.holes;
-    p->sums[k].cracks.inner += c.inner;
-    p->sums[k].cracks.spills += c.spills;
-}
-
-static void count_movers(const pictures *p, bench_row *row)
-{
-    const mover_order c = movers_count(&(mover_pictures){p->movers, p->truth.depths, p->shown.depths, p->pixels});
-    row->mover_pixels += c.pixels;
-    row->mover_pixels_wrong += c.wrong;
-}
-
-static void compare(pictures *p, uint32_t view, uint32_t k)
-{
-    const flip_pair pair = {p->truth.rgba, p->shown.rgba};
-    sums *s = &p->sums[k];
-    bench_row *row = &p->q->rows[k];
-    flip_keep_reference(p->flip, (uint64_t)view + 1);
-    const double flip = flip_compare(p->flip, &pair, p->map);
-    s->squared_error += similarity_squared_error(&pair, p->pixels);
-    if (p->similarity) s->ssim += similarity_ssim(p->similarity, &pair);
-    if (s->views == 0 || flip > row->flip_max) {
-        row->flip_max = flip;
-        row->flip_view = view;
-        if (s->worst.heat) keep_worst(p, s);
-    }
-    s->flips[s->views++] = flip;
+    truth_picture *now = truth_of(p, view), *before = view > 0 ? truth_of(p, view - 1) : NULL;
+    if (strategy_input(&p->q->strategies[k], view).frame.flags & CULL_VIEW_CUT) before = NULL;
+    j->now = now;
+    j->before = before;
+    j->view = view;
+    j->strategy = k;
+    p->given = worker_give(p->worker);
+    now->job = p->given;
+    if (before) before->job = p->given;
 }
 
 static result look_at(pictures *p, uint32_t view, uint32_t k, uint64_t *faults)
 {
     strategy_view out;
     const strategy_request request = {.view = view, .mode = RENDER_SHADED, .marks = MARK_NOTHING};
+    picture_job *j = &p->jobs[(p->given + 1) % PICTURES_JOBS];
     result done = strategy_run_view(&p->q->strategies[k], &request, p->r, &out);
-    if (done == RESULT_OK) done = read_picture(p, &p->shown);
+    worker_wait(p->worker, p->given + 1 > PICTURES_JOBS ? p->given + 1 - PICTURES_JOBS : 0);
+    if (done == RESULT_OK) done = read_picture(p, &j->shown);
     if (done != RESULT_OK) return done;
     *faults += out.faults;
-    count_cracks(p, view, k);
-    if (p->movers) count_movers(p, &p->q->rows[k]);
-    if (view >= bench_warmup_views(p->q->bench->path)) compare(p, view, k);
+    give(p, j, view, k);
     return RESULT_OK;
 }
 
@@ -271,12 +245,13 @@ static result look_at_all(pictures *p, progress *bar)
         end = group_end(p, first);
         if (wants_any(p, first, end)) done = look_at_group(p, first, end, bar);
     }
+    worker_wait(p->worker, p->given);
     return done;
 }
 
 // ---- Results ----
 
-static void close_row(const pictures *p, sums *s, bench_row *row)
+static void close_row(const pictures *p, picture_sums *s, bench_row *row)
 {
     row->pictures_measured = s->views;
     row->crack_pixels = s->cracks.holes + s->cracks.spills;
@@ -287,10 +262,13 @@ static void close_row(const pictures *p, sums *s, bench_row *row)
     row->has_ssim = p->similarity != NULL;
     row->flip = mean(s->flips, s->views);
     row->flip_p99 = percentile(s->flips, s->views, 0.99);
+    row->popping_views = s->popping_views;
+    if (s->popping_views) row->popping = mean(s->poppings, s->popping_views);
+    if (s->popping_views) row->popping_p99 = percentile(s->poppings, s->popping_views, 0.99);
     row->faults += row->picture_faults;
 }
 
-static result write_worst(const pictures *p, const sums *s, const bench_row *row)
+static result write_worst(const pictures *p, const picture_sums *s, const bench_row *row)
 {
     const image_name names[] = {{row->name, "truth", row->flip_view}, {row->name, "shown", row->flip_view}, {row->name, "flip", row->flip_view}};
     const uint8_t *const pictures_of[] = {s->worst.truth, s->worst.shown, s->worst.heat};

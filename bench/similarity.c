@@ -1,22 +1,19 @@
 // PSNR and SSIM: see similarity.h. SSIM by tiles: equal ones are 1 without a sum.
 // SPDX-License-Identifier: MIT
 // Invariant: a tile's own mean is taken off before squares are summed, so that variances keep their digits in float.
-#include "similarity.h"
+#include "similarity_parts.h"
 
 #include <math.h>
 #include <string.h>
 
-enum { TILE_PX = 64, SIDE_PX = TILE_PX + SSIM_WINDOW_PX - 1, SUMS = 5 };
-static const float C1 = (0.01f * 255) * (0.01f * 255), C2 = (0.03f * 255) * (0.03f * 255);
-
-struct similarity {
-    const allocator *memory;
-    uint32_t width_px, height_px;
-    float window[SSIM_WINDOW_PX];
-    float of_picture[2][SIDE_PX][SIDE_PX]; // luminance less the tile's mean
-    float across[SUMS][SIDE_PX][TILE_PX];  // of a, b, a^2, b^2, ab
-    float down[SUMS][TILE_PX];
-};
+static const similarity_kernel *best_kernel(void)
+{
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx512f")) return &similarity_kernel_avx512;
+    if (__builtin_cpu_supports("avx2")) return &similarity_kernel_avx2;
+#endif
+    return &similarity_kernel_plain;
+}
 
 double similarity_squared_error(const flip_pair *pair, size_t pixels)
 {
@@ -42,6 +39,7 @@ similarity *similarity_open(const similarity_size *q, const allocator *memory)
     similarity *s = memory_alloc_zeroed(memory, 1, sizeof *s);
     if (!s) return NULL;
     s->memory = memory;
+    s->kernel = best_kernel();
     s->width_px = q->width_px;
     s->height_px = q->height_px;
     double weights[SSIM_WINDOW_PX], sum = 0;
@@ -94,60 +92,20 @@ static float load(similarity *s, const flip_pair *pair, const tile *t)
     return mean;
 }
 
-// Beyond the tile's own pixels stands what was there before: finite, and read by no window that counts.
-static void sum_across(similarity *s, uint32_t rows)
-{
-    for (uint32_t y = 0; y < rows; ++y) {
-        float products[SUMS][SIDE_PX];
-        for (int x = 0; x < SIDE_PX; ++x) {
-            const float a = s->of_picture[0][y][x], b = s->of_picture[1][y][x];
-            products[0][x] = a;
-            products[1][x] = b;
-            products[2][x] = a * a;
-            products[3][x] = b * b;
-            products[4][x] = a * b;
-        }
-        for (int i = 0; i < SUMS; ++i) {
-            float *out = s->across[i][y];
-            for (int x = 0; x < TILE_PX; ++x) out[x] = s->window[0] * products[i][x];
-            for (int k = 1; k < SSIM_WINDOW_PX; ++k)
-                for (int x = 0; x < TILE_PX; ++x) out[x] += s->window[k] * products[i][x + k];
-        }
-    }
-}
-
-static double sum_row(similarity *s, uint32_t y, uint32_t wide, float mean)
-{
-    for (int i = 0; i < SUMS; ++i) {
-        float *out = s->down[i];
-        for (int x = 0; x < TILE_PX; ++x) out[x] = s->window[0] * s->across[i][y][x];
-        for (uint32_t k = 1; k < SSIM_WINDOW_PX; ++k)
-            for (int x = 0; x < TILE_PX; ++x) out[x] += s->window[k] * s->across[i][y + k][x];
-    }
-    double sum = 0;
-    for (uint32_t x = 0; x < wide; ++x) {
-        const float a = s->down[0][x], b = s->down[1][x], mean_a = a + mean, mean_b = b + mean;
-        const float variance_a = s->down[2][x] - a * a, variance_b = s->down[3][x] - b * b, covariance = s->down[4][x] - a * b;
-        const float over = (2 * mean_a * mean_b + C1) * (2 * covariance + C2);
-        sum += (double)(over / ((mean_a * mean_a + mean_b * mean_b + C1) * (variance_a + variance_b + C2)));
-    }
-    return sum;
-}
-
 double similarity_ssim(similarity *s, const flip_pair *pair)
 {
     const uint32_t wide = s->width_px - SSIM_WINDOW_PX + 1, high = s->height_px - SSIM_WINDOW_PX + 1;
     double sum = 0;
-    for (uint32_t y = 0; y < high; y += TILE_PX)
-        for (uint32_t x = 0; x < wide; x += TILE_PX) {
-            const tile t = {x, y, wide - x < TILE_PX ? wide - x : TILE_PX, high - y < TILE_PX ? high - y : TILE_PX};
+    for (uint32_t y = 0; y < high; y += SSIM_TILE_PX)
+        for (uint32_t x = 0; x < wide; x += SSIM_TILE_PX) {
+            const tile t = {x, y, wide - x < SSIM_TILE_PX ? wide - x : SSIM_TILE_PX, high - y < SSIM_TILE_PX ? high - y : SSIM_TILE_PX};
             if (!differs(s, pair, &t)) {
                 sum += (double)t.wide * t.high;
                 continue;
             }
             const float mean = load(s, pair, &t);
-            sum_across(s, t.high + SSIM_WINDOW_PX - 1);
-            for (uint32_t row = 0; row < t.high; ++row) sum += sum_row(s, row, t.wide, mean);
+            s->kernel->across(s, t.high + SSIM_WINDOW_PX - 1);
+            for (uint32_t row = 0; row < t.high; ++row) sum += s->kernel->row(s, &(similarity_row){row, t.wide, mean});
         }
     return sum / ((double)wide * high);
 }

@@ -64,8 +64,9 @@ result strategy_open(const bench_request *q, const bench_strategy_request *chain
 static result tell_costs(const strategy *s, report *r)
 {
     cull_costs costs = s->q->services->costs;
-    if (s->q->costs == BENCH_COSTS_FIXED) return RESULT_OK;
-    const result done = renderer_costs(s->g, r, &costs);
+    result done = s->q->costs == BENCH_COSTS_FIXED ? RESULT_OK : renderer_costs(s->g, r, &costs);
+    costs.frame_ns = s->q->frame_ms * 1e6;
+    if (done == RESULT_OK) done = render_layout_levels(s->layout, r, &costs);
     if (done == RESULT_OK) host_costs_set(s->q->services, &costs);
     return done;
 }

@@ -71,7 +71,8 @@ static int put_head(buffer *text, const columns *c)
     if (c->has_motion) good = good && put(text, " %9s", "a mover");
     if (c->gl_used) good = good && put(text, " %9s %9s", "gl ms", "total ms");
     if (c->has_pictures)
-        good = good && put(text, " %9s %9s %9s %9s %6s %6s %6s %7s %7s", "total p95", "total p99", "refreshes", "pictures", "PSNR", "SSIM", "FLIP", "p99", "cracks");
+        good = good && put(text, " %9s %9s %7s %9s %9s %6s %6s %6s %7s %7s %7s", "total p95", "total p99", "p99/p50", "refreshes", "pictures", "PSNR", "SSIM", "FLIP",
+                           "p99", "cracks", "popping");
     if (c->truth == BENCH_TRUTH) good = good && put(text, " %8s %7s %9s %7s", "visible", "excess", "missed px", "items");
     return good && put(text, "\n");
 }
@@ -91,11 +92,13 @@ static const char *short_bytes(uint64_t bytes, char out[16])
 
 static int put_pictures(buffer *text, const bench_row *row)
 {
-    char bytes[16], ssim[16] = "-";
-    int good = put(text, " %9.2f %9.2f %9.2f %9s", row->total_ms_p95, row->total_ms_p99, row->refreshes, short_bytes(row->picture_bytes, bytes));
+    char bytes[16], ssim[16] = "-", ratio[16] = "-", popping[16] = "-";
+    if (row->total_ms > 0) snprintf(ratio, sizeof ratio, "%.2f", row->total_ms_p99 / row->total_ms);
+    if (row->popping_views) snprintf(popping, sizeof popping, "%.4f", row->popping);
+    int good = put(text, " %9.2f %9.2f %7s %9.2f %9s", row->total_ms_p95, row->total_ms_p99, ratio, row->refreshes, short_bytes(row->picture_bytes, bytes));
     if (row->has_ssim) snprintf(ssim, sizeof ssim, "%.4f", row->ssim);
-    if (!row->pictures_measured) return good && put(text, " %6s %6s %6s %7s %7s", "-", "-", "-", "-", "-");
-    return good && put(text, " %6.2f %6s %6.4f %7.4f %7llu", row->psnr, ssim, row->flip, row->flip_p99, (unsigned long long)row->crack_pixels);
+    if (!row->pictures_measured) return good && put(text, " %6s %6s %6s %7s %7s %7s", "-", "-", "-", "-", "-", "-");
+    return good && put(text, " %6.2f %6s %6.4f %7.4f %7llu %7s", row->psnr, ssim, row->flip, row->flip_p99, (unsigned long long)row->crack_pixels, popping);
 }
 
 static int put_row(buffer *text, const bench_row *row, const columns *c)

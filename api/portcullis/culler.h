@@ -201,6 +201,7 @@ struct cull_capture {
                          // that has depth, and of several such pictures of a frame the one shown first stands in front
     cull_vec3 eye;         // where eye_is_said: what it is taken from, such as where the view's eye will be in some frames
     uint32_t eye_is_said;  // 0: from the view's eye
+    float detail_m;        // 0: exactly these items; else coarser ones will do, of which no point is farther from its place (cull_costs.levels)
 };
 
 // "Show slot instead of these items." Allowed while visit.slots[slot] is 1, or once captured in this step or before.
@@ -361,6 +362,11 @@ typedef struct cull_blob { const void *bytes; uint64_t size; } cull_blob; // 64-
 // Extension "cull.costs/1" of a host (zone NULL): cull_costs, what drawing takes on this machine. Ask [build], read [step]: the numbers
 // stand while a frame lasts, and may be measured anew between two. CPU time, of all threads, in nanoseconds.
 #define CULL_EXT_COSTS "cull.costs/1"
+#define CULL_LEVELS_MOST 3u
+typedef struct cull_level {
+    double away_m;   // no point of it is farther from its place
+    double polygons; // of the scene's, that are left: 0 .. 1
+} cull_level;
 typedef struct cull_costs {
     double polygon_ns;             // a triangle inside the picture, however small
     double pixel_ns;               // a pixel that geometry covers
@@ -373,7 +379,8 @@ typedef struct cull_costs {
     uint64_t picture_bytes;        // what the pictures of all zones and views may take together; beyond it slots are emptied
     uint32_t pixel_bytes, depth_pixel_bytes; // of those, what a pixel of a slot takes; where it keeps depth
     uint32_t is_measured;          // 0: fixed numbers, the same on every machine
-    uint32_t reserved;
+    uint32_t level_count;          // of levels; 0: captures draw every polygon
+    cull_level levels[CULL_LEVELS_MOST]; // finest first: what a capture's detail_m is worth
 } cull_costs;
 
 // Extension "cull.explain/1" of a built culler: why an item is kept or dropped, one line of text for a person.

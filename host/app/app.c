@@ -4,6 +4,7 @@
 #include "app.h"
 
 #include "../core/search_path.h"
+#include "../import/number.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,6 +72,12 @@ int parse_count(const char *text, uint32_t least, uint32_t most, uint32_t *out)
     if (*end || end - text > 10 || value < least || value > most) return 0;
     *out = (uint32_t)value;
     return 1;
+}
+
+int parse_ms(const char *text, double *out)
+{
+    const char *end = text + strlen(text);
+    return *text && number_read(text, end, out) == end && *out >= 0 && *out <= 100000;
 }
 
 int parse_size(const char *text, app_size *out)

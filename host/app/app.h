@@ -7,7 +7,7 @@
 #include "../import/import.h"
 #include "../render/render.h"
 
-#define APP_VIEWS "FILE|auto:[walk:|street:|roofs:|turn:|edges:]N|path:NAME" // what --views takes
+#define APP_VIEWS "FILE|auto:[walk:|drive:|street:|roofs:|turn:|edges:]N|path:NAME" // what --views takes
 
 enum { EXIT_GOOD = 0, EXIT_CHECK_FAILED = 1, EXIT_USAGE = 2, EXIT_NO_GL = 3 };
 
@@ -48,6 +48,7 @@ enum { APP_SIDE_MOST = 8192 }; // pixels of a picture, or samples
 typedef struct app_size { uint32_t width_px, height_px; } app_size;
 int parse_size(const char *text, app_size *out);                                     // "1280x720"; 0 when it is none
 int parse_count(const char *text, uint32_t least, uint32_t most, uint32_t *out);     // 0 when it is none
+int parse_ms(const char *text, double *out);                                         // 0 to 100000 milliseconds; 0 when it is none
 int parse_doors(const char *text, door_state *out);                                  // "open", "shut"
 typedef enum doors_choice { DOORS_ALL_OPEN, DOORS_ALL_SHUT, DOORS_OF_SCENE } doors_choice; // OF_SCENE: as its file says, open in maps
 int app_doors_parse(const char *text, doors_choice *out);                            // "open", "shut", "scene"; 0 when it is none

@@ -26,6 +26,7 @@ enum {
     KEY_IMAGES,
     KEY_LATENCY,
     KEY_SAMPLES,
+    KEY_FRAME_MS,
     KEY_JSON,
     KEY_CSV,
     KEY_PICTURES,
@@ -41,6 +42,7 @@ typedef struct arguments {
     const char *cullers[STRATEGIES_MOST];
     zone_options zones;
     uint32_t culler_count, swap, repeat, latency, samples;
+    double frame_ms;
     app_size size;
     doors_choice doors;
     bench_truth truth;
@@ -64,6 +66,7 @@ static const struct argp_option options[] = {
     {"repeat", KEY_REPEAT, "N", 0, "passes over the path (default 3)", 0},
     {"samples", KEY_SAMPLES, "N", 0, "each pixel is judged at N x N places, 1 to 8 (default 1): what is seen, and what is missed in samples", 0},
     {"no-truth", KEY_NO_TRUTH, NULL, 0, "time only: no pictures, no GL unless a culler tests", 0},
+    {"frame-ms", KEY_FRAME_MS, "X", 0, "cullers are told that a frame may take so long, pictures and all: they spread what they can (default 0: nobody says)", 0},
     {"ids", KEY_IDS, NULL, 0, "writing the id of every drawn item counts as culling", 0},
     {"doors", KEY_DOORS, "open|shut|scene", 0, "how doors stand (default open; scene: as its file says)", 0},
     {"no-movers", KEY_NO_MOVERS, NULL, 0, "doors' leaves and all else that moves taken away: what stands still is not hidden by them", 0},
@@ -87,6 +90,7 @@ static void parse_numbers(int key, const char *text, struct argp_state *state)
     if (key == KEY_REPEAT && !parse_count(text, 1, 10000, &a->repeat)) argp_error(state, "--repeat takes 1 to 10000, not '%s'", text);
     if (key == KEY_LATENCY && !parse_count(text, 0, 64, &a->latency)) argp_error(state, "--query-latency takes 0 to 64, not '%s'", text);
     if (key == KEY_SAMPLES && !parse_count(text, 1, BENCH_SAMPLES_MOST, &a->samples)) argp_error(state, "--samples takes 1 to 8, not '%s'", text);
+    if (key == KEY_FRAME_MS && !parse_ms(text, &a->frame_ms)) argp_error(state, "--frame-ms takes 0 to 100000 milliseconds, not '%s'", text);
     if (key == KEY_SWAP && !parse_count(text, 1, SWAP_VIEWS_MOST, &a->swap)) argp_error(state, "--swap takes 1 to 1000000 views, not '%s'", text);
     if (key == KEY_DOORS && !app_doors_parse(text, &a->doors)) argp_error(state, "--doors takes open, shut or scene, not '%s'", text);
 }
@@ -117,6 +121,7 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_REPEAT:
     case KEY_LATENCY:
     case KEY_SAMPLES:
+    case KEY_FRAME_MS:
     case KEY_SWAP:
     case KEY_DOORS: parse_numbers(key, text, state); break;
     case ARGP_KEY_ARG:
@@ -228,7 +233,7 @@ static result run_bench(app *a, const arguments *q, const camera_path *path, uin
                                  .plugins = a->plugins, .services = &a->services,
                                  .strategy_count = count, .width_px = q->size.width_px, .height_px = q->size.height_px, .repeat = q->repeat,
                                  .query_latency = q->latency, .samples = q->samples, .truth = q->truth, .ids = q->ids, .pictures = q->pictures,
-                                 .images = q->images};
+                                 .frame_ms = q->frame_ms, .images = q->images};
     const bench_labels labels = {scene_label(q->scene, &a->texts), path->name};
     if (!labels.scene) return report_no_memory(&a->report, NULL);
     bench_result results;

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { KEY_VIEWS = 256, KEY_VIEW, KEY_CULLER, KEY_DOORS, KEY_SIZE, KEY_PLUGIN, KEY_KEYS, KEY_FRAMES };
+enum { KEY_VIEWS = 256, KEY_VIEW, KEY_CULLER, KEY_DOORS, KEY_SIZE, KEY_PLUGIN, KEY_KEYS, KEY_FRAMES, KEY_FRAME_MS };
 static const double SCRIPT_STEP_S = 1.0 / 30, STEP_MOST_S = 0.25;
 
 typedef struct arguments {
@@ -19,6 +19,7 @@ typedef struct arguments {
     const char *cullers[EXPLORE_CHAINS_MOST];
     uint32_t culler_count;
     uint32_t view, frames; // frames 0: until the window is closed
+    double frame_ms;
     app_size size;
     doors_choice doors;
     app_plugin_files plugins;
@@ -30,6 +31,7 @@ static const struct argp_option options[] = {
     {"culler", KEY_CULLER, "CHAIN", 0, "of zones whose file names none (default frustum); given several times, C goes through them", 0},
     {"doors", KEY_DOORS, "open|shut|scene", 0, "how doors stand at first (default scene: as its file says)", 0},
     {"size", KEY_SIZE, "WxH", 0, "of the window (default 1280x720)", 0},
+    {"frame-ms", KEY_FRAME_MS, "X", 0, "cullers are told that a frame may take so long (default 0: nobody says)", 0},
     {"plugin", KEY_PLUGIN, "FILE", 0, "look at this library first", 0},
     {"keys", KEY_KEYS, "TEXT", 0, "press these keys, one a frame, '.' none; the window ends behind the last unless --frames says more", 0},
     {"frames", KEY_FRAMES, "N", 0, "end after so many frames", 0},
@@ -56,6 +58,9 @@ static error_t parse(int key, char *text, struct argp_state *state)
         break;
     case KEY_FRAMES:
         if (!parse_count(text, 1, 1000000, &a->frames)) argp_error(state, "--frames takes a number from 1 to 1,000,000, not '%s'", text);
+        break;
+    case KEY_FRAME_MS:
+        if (!parse_ms(text, &a->frame_ms)) argp_error(state, "--frame-ms takes 0 to 100000 milliseconds, not '%s'", text);
         break;
     case KEY_DOORS:
         if (!app_doors_parse(text, &a->doors)) argp_error(state, "--doors takes open, shut or scene, not '%s'", text);
@@ -230,6 +235,7 @@ int command_view(int argc, char **argv)
         explore e = {.a = &a,
                      .fly = path.cameras[q.view],
                      .speed_m_s = 3,
+                     .frame_ms = q.frame_ms,
                      .width_px = q.size.width_px,
                      .height_px = q.size.height_px,
                      .shows_help = !q.keys && !q.frames};

@@ -38,7 +38,7 @@ typedef struct explore {
     frame_stats stats;
     explore_counters counters;
     buffer lines, faces;  // overlay_vertex, reused
-    double time_s, speed_m_s;
+    double time_s, speed_m_s, frame_ms; // frame_ms: that a frame may take, as cullers are told; 0: nobody says
     scissor rectangles;
     uint32_t frame, told_frame, width_px, height_px, zone; // zone: that the camera is in, the first of them; SCENE_NONE: none
     render_mode mode;

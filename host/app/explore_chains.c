@@ -47,6 +47,8 @@ static result tell_slots(explore *e)
     memory_free(e->a->memory, counts, zone_count, sizeof *counts);
     if (done == RESULT_OK && e->has_pictures) {
         done = renderer_costs(e->g, &e->a->report, &costs);
+        costs.frame_ns = e->frame_ms * 1e6;
+        if (done == RESULT_OK) done = render_layout_levels(e->layout, &e->a->report, &costs);
         if (done == RESULT_OK) host_costs_set(&e->a->services, &costs);
     }
     return done;

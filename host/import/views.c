@@ -78,8 +78,8 @@ result camera_path_parse(const char *path, const char *text, size_t size, const 
 
 // ---- Automatic ----
 
-typedef enum auto_kind { AUTO_VIEWS, AUTO_WALK, AUTO_EDGES, AUTO_STREET, AUTO_ROOFS, AUTO_TURN, AUTO_NONE } auto_kind;
-static const char *const auto_starts[AUTO_NONE] = {"auto:", "auto:walk:", "auto:edges:", "auto:street:", "auto:roofs:", "auto:turn:"};
+typedef enum auto_kind { AUTO_VIEWS, AUTO_WALK, AUTO_EDGES, AUTO_STREET, AUTO_ROOFS, AUTO_TURN, AUTO_DRIVE, AUTO_NONE } auto_kind;
+static const char *const auto_starts[AUTO_NONE] = {"auto:", "auto:walk:", "auto:edges:", "auto:street:", "auto:roofs:", "auto:turn:", "auto:drive:"};
 
 static auto_kind auto_kind_of(const char *what, const char **out_count)
 {
@@ -109,7 +109,7 @@ static uint32_t read_count(const char *text)
 static result make_automatic(auto_kind kind, uint32_t count, const scene *s, double aspect, const allocator *memory, report *r, camera_path *out)
 {
     static result (*const makers[AUTO_NONE])(auto_views *, uint32_t, camera *) = {auto_views_make,   auto_walk_make,  auto_edges_make,
-                                                                                auto_street_make, auto_roofs_make, auto_turn_make};
+                                                                                auto_street_make, auto_roofs_make, auto_turn_make, auto_drive_make};
     auto_views a;
     camera *cameras = memory_alloc(memory, count, sizeof *cameras);
     if (!cameras) return report_no_memory(r, s->path);
@@ -158,7 +158,7 @@ result camera_path_load(const char *what, const scene *s, double aspect, const a
     const auto_kind kind = auto_kind_of(what, &number);
     if (kind != AUTO_NONE) {
         const uint32_t count = read_count(number);
-        if (!count) return report_error(r, NULL, 0, "--views %s: write auto:N, auto:walk:N, auto:edges:N, auto:street:N, auto:roofs:N or auto:turn:N, N from 1 to 100000", what);
+        if (!count) return report_error(r, NULL, 0, "--views %s: write auto:N, auto:walk:N, auto:drive:N, auto:edges:N, auto:street:N, auto:roofs:N or auto:turn:N, N from 1 to 100000", what);
         return make_automatic(kind, count, s, aspect, memory, r, out);
     }
     static const char of_scene[] = "path:";

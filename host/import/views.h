@@ -16,6 +16,7 @@ typedef struct camera_path {
 // "auto:N"        spread over it
 // "auto:walk:N"   a smooth walk, 0.3 m a view          "auto:turn:N" the same of one who spins, 15 degrees a view
 // "auto:street:N" on the ground under the open sky, 2.4 m a view; "auto:roofs:N" over the roofs, 2.4 m a view
+// "auto:drive:N"  on the ground under the open sky in a car, 1 m a view, with turns as wide as a car's
 // "auto:edges:N"  eyes on portals and in planes of walls, or beside by ulps
 // aspect: of the picture, for automatic views only.
 result camera_path_load(const char *what, const scene *s, double aspect, const allocator *memory, report *r, camera_path *out);

@@ -14,6 +14,8 @@
 #define AUTO_NEAR_M 0.0625       // smaller scenes are looked at from far enough not to be swallowed
 #define AUTO_EYE_HEIGHT_M 1.7
 #define AUTO_STEP_M 0.3 // of a walk, a frame
+#define AUTO_DRIVE_STEP_M 1.0
+#define AUTO_CAR_EYE_HEIGHT_M 1.2
 
 typedef struct eye { double at[3]; } eye; // relative to auto_views.origin
 
@@ -44,6 +46,7 @@ eye auto_place(auto_views *a, uint32_t i);                   // number i of the 
 result auto_views_make(auto_views *a, uint32_t count, camera *cameras);
 result auto_walk_make(auto_views *a, uint32_t count, camera *cameras);
 result auto_street_make(auto_views *a, uint32_t count, camera *cameras);
+result auto_drive_make(auto_views *a, uint32_t count, camera *cameras);
 result auto_turn_make(auto_views *a, uint32_t count, camera *cameras);
 result auto_roofs_make(auto_views *a, uint32_t count, camera *cameras);
 result auto_edges_make(auto_views *a, uint32_t count, camera *cameras); // BAD_INPUT, reported: no place for one

@@ -1,9 +1,9 @@
 // Automatic views auto:walk:N: a walker that looks ahead along arcs, prefers where it hasn't been, and turns back along
-// its own trail at dead ends. auto:street:N: on the ground under the open sky, a view every few steps. auto:turn:N: the walk
-// of one who spins.
+// its own trail at dead ends. auto:street:N: on the ground under the open sky, a view every few steps. auto:drive:N: there in a
+// car. auto:turn:N: the walk of one who spins.
 // SPDX-License-Identifier: MIT
-// Invariant: every step is AUTO_STEP_M long; its middle and its end keep AUTO_CLEARANCE_M from all geometry, so no wall,
-// however thin, is walked through (the balls at 0.15 m from one another overlap).
+// Invariant: every step is gait.step_m long; its middle and its end keep gait.clearance_m from all geometry, so no wall,
+// however thin, is walked through (the balls at half a step from one another overlap).
 #include "views_auto.h"
 
 #include <math.h>
@@ -24,30 +24,44 @@ enum {
 static const double PI = 3.14159265358979323846;
 static const double ROUNDING_M = 1e-6;       // a step walked may end an ulp beside the one looked at
 static const double SLOPE = 0.5;            // metres up or down a metre ahead, only where no level arc is free
-static const double CELL_M = 1.5;           // of the memory of where the walker has been
-static const double LOOK_TURN_DEG = 6;      // most that the view turns a frame
-static const double LOOK_PART = 0.25;       // of the way to the heading that the view turns a frame
 static const double PITCH_MOST_DEG = 15, PITCH_TURN_DEG = 0.5;
 static const uint32_t PITCH_FRAMES = 50;    // a new pitch is wanted this often
 static const uint32_t WHIM_FRAMES = 60;     // a new side is preferred this often
-static const uint32_t STREET_STRIDE = 8;    // steps from view to view: 2.4 m, short of what the bench calls a jump
-static const double STREET_CLEARANCE_M = 0.5, STREET_RISE_M = 0.3; // at most, a step: stairs
 static const double STREET_WIDE_M = 40;     // to what stands beside it
 static const double STREET_SPREAD_M = 1;    // of heights where a walk in streets may begin
-static const double SPIN_DEG = 15;          // a frame
 static const double REGION_MOST_M = 32, REGION_LEAST_M = 4; // how far round a model one may walk
 
 typedef struct visit_cell { int32_t x, y, z; uint32_t count; } visit_cell;
 
 typedef struct arc { double turn, slope, score; int free_frames; } arc;
 
-typedef enum walk_style { WALK_AIR, WALK_STREET, WALK_TURN } walk_style;
+typedef enum gait_ground { IN_AIR, ON_GROUND } gait_ground;
+typedef enum gait_back { BACK_TURNED, BACK_REVERSING } gait_back; // where one looks who goes back: that way, or as before
+
+typedef struct gait {
+    gait_ground ground;
+    gait_back back;
+    uint32_t stride;      // steps from view to view
+    double step_m, clearance_m;
+    double eye_m, rise_m; // over the ground; up or down at most, half a step
+    double sharpness;     // of its turns, by a walker's
+    double cell_m;        // of the memory of where it has been
+    double look_turn_deg, look_part; // most that the view turns a frame; of the way to the heading
+    double spin_deg;      // a frame; 0: looks where it goes
+} gait;
+
+// A street's views stand 2.4 m apart, short of what the bench calls a jump; its rise is that of stairs.
+static const gait WALK = {IN_AIR, BACK_TURNED, 1, AUTO_STEP_M, AUTO_CLEARANCE_M, AUTO_EYE_HEIGHT_M, 0, 1, 1.5, 6, 0.25, 0};
+static const gait TURN = {IN_AIR, BACK_TURNED, 1, AUTO_STEP_M, AUTO_CLEARANCE_M, AUTO_EYE_HEIGHT_M, 0, 1, 1.5, 6, 0.25, 15};
+static const gait STREET = {ON_GROUND, BACK_TURNED, 8, AUTO_STEP_M, 0.5, AUTO_EYE_HEIGHT_M, 0.3, 1, 1.5, 6, 0.25, 0};
+// 1 m a view is 30 m/s at the bench's 30 views a second. Turns of at most 9 degrees a metre: a radius of 6.4 m. A kerb's rise, or a slope of 0.4.
+static const gait DRIVE = {ON_GROUND, BACK_REVERSING, 1, AUTO_DRIVE_STEP_M, 0.75, AUTO_CAR_EYE_HEIGHT_M, 0.2, 0.5, 5, 3, 0.2, 0};
 
 typedef struct walker {
     auto_views *a;
-    walk_style style;
+    gait gait;
     double low[3], high[3]; // where it may go
-    double clearance;
+    double clearance;       // the gait's, and what rounding takes
     double at[3], heading;  // heading of the last step
     double whim;            // turn that it is in the mood for, -1 to 1
     buffer trail;           // eye: from the start to here, without dead ends
@@ -59,7 +73,8 @@ typedef struct walker {
 
 static visit_cell *visit_slot(const walker *w, const double at[3])
 {
-    const visit_cell key = {(int32_t)floor(at[0] / CELL_M), (int32_t)floor(at[1] / CELL_M), (int32_t)floor(at[2] / CELL_M), 0};
+    const double cell_m = w->gait.cell_m;
+    const visit_cell key = {(int32_t)floor(at[0] / cell_m), (int32_t)floor(at[1] / cell_m), (int32_t)floor(at[2] / cell_m), 0};
     uint32_t slot = (uint32_t)key.x * 0x9e3779b9u ^ (uint32_t)key.y * 0x85ebca6bu ^ (uint32_t)key.z * 0xc2b2ae35u;
     for (slot &= w->visit_slots - 1;; slot = (slot + 1) & (w->visit_slots - 1)) {
         visit_cell *v = &w->visits[slot];
@@ -74,8 +89,9 @@ static uint32_t visit_count(const walker *w, const double at[3])
 
 static void visit(walker *w, const double at[3])
 {
+    const double cell_m = w->gait.cell_m;
     visit_cell *v = visit_slot(w, at);
-    *v = (visit_cell){(int32_t)floor(at[0] / CELL_M), (int32_t)floor(at[1] / CELL_M), (int32_t)floor(at[2] / CELL_M), v->count + 1};
+    *v = (visit_cell){(int32_t)floor(at[0] / cell_m), (int32_t)floor(at[1] / cell_m), (int32_t)floor(at[2] / cell_m), v->count + 1};
 }
 
 // ---- Looking ahead ----
@@ -98,20 +114,21 @@ static void step_from(const double from[3], double heading, double slope, double
 // To eye height over the ground near below, which boxes alone have none of but the lowest place.
 static int is_on_street(const walker *w, double at[3])
 {
-    const double from[3] = {at[0], at[1] + STREET_RISE_M, at[2]};
+    const gait *g = &w->gait;
+    const double from[3] = {at[0], at[1] + g->rise_m, at[2]};
     double drop = free_space_ground(w->a->space, from);
     if (isinf(drop) && !w->a->has_meshes) drop = from[1] - w->a->low[1];
-    if (!(fabs(drop - STREET_RISE_M - AUTO_EYE_HEIGHT_M) <= STREET_RISE_M)) return 0;
-    at[1] = from[1] - drop + AUTO_EYE_HEIGHT_M;
+    if (!(fabs(drop - g->rise_m - g->eye_m) <= g->rise_m)) return 0;
+    at[1] = from[1] - drop + g->eye_m;
     return 1;
 }
 
 static int can_step(const walker *w, const double from[3], double heading, double slope, double to[3])
 {
     double middle[3];
-    step_from(from, heading, slope, AUTO_STEP_M / 2, middle);
-    step_from(from, heading, slope, AUTO_STEP_M, to);
-    if (w->style == WALK_STREET && !(is_on_street(w, middle) && is_on_street(w, to))) return 0;
+    step_from(from, heading, slope, w->gait.step_m / 2, middle);
+    step_from(from, heading, slope, w->gait.step_m, to);
+    if (w->gait.ground == ON_GROUND && !(is_on_street(w, middle) && is_on_street(w, to))) return 0;
     return is_free(w, middle) && is_free(w, to);
 }
 
@@ -130,10 +147,10 @@ static arc look_along(const walker *w, double heading, double turn, double slope
     return found;
 }
 
-static double turn_of(int i)
+static double turn_of(const walker *w, int i)
 {
     static const double degrees[TURNS] = {0, 1, -1, 2.5, -2.5, 5, -5, 8, -8, 12, -12, 18, -18};
-    return degrees[i] * (PI / 180);
+    return degrees[i] * w->gait.sharpness * (PI / 180);
 }
 
 typedef enum grade { GRADE_LEVEL, GRADE_SLOPED } grade;
@@ -145,7 +162,7 @@ static arc best_arc(const walker *w, int least, grade g)
     for (int s = -1; s <= 1; ++s) {
         if ((s == 0) != (g == GRADE_LEVEL)) continue;
         for (int t = 0; t < TURNS; ++t) {
-            const arc found = look_along(w, w->heading, turn_of(t), s * SLOPE);
+            const arc found = look_along(w, w->heading, turn_of(w, t), s * SLOPE);
             if (found.free_frames < least) continue;
             if (!best.free_frames || found.score > best.score) best = found;
         }
@@ -239,7 +256,9 @@ static double turned_towards(double from, double to, double part, double most)
 
 static void turn_gaze(walker *w, gaze *g, uint32_t frame)
 {
-    g->yaw = turned_towards(g->yaw, w->heading, LOOK_PART, LOOK_TURN_DEG * (PI / 180));
+    const gait *way = &w->gait;
+    const double behind = w->going_back && way->back == BACK_REVERSING ? PI : 0;
+    g->yaw = turned_towards(g->yaw, w->heading + behind, way->look_part, way->look_turn_deg * (PI / 180));
     if (frame % PITCH_FRAMES == 0) g->pitch_wanted = random_between(&w->a->random, -PITCH_MOST_DEG, PITCH_MOST_DEG) * (PI / 180);
     if (frame % WHIM_FRAMES == 0) w->whim = random_between(&w->a->random, -1, 1);
     const double wanted = fmax(-1, fmin(1, (g->pitch_wanted - g->pitch) * 4)) * PITCH_TURN_DEG * (PI / 180);
@@ -262,26 +281,21 @@ static result walk_frame(walker *w, way *on)
     }
     double to[3];
     w->heading = remainder(w->heading + on->along.turn, 2 * PI);
-    step_from(w->at, w->heading, on->along.slope, AUTO_STEP_M, to);
-    if (w->style == WALK_STREET) is_on_street(w, to);
+    step_from(w->at, w->heading, on->along.slope, w->gait.step_m, to);
+    if (w->gait.ground == ON_GROUND) is_on_street(w, to);
     on->left--;
     return arrive(w, to);
 }
 
-static uint32_t stride_of(walk_style style)
-{
-    return style == WALK_STREET ? STREET_STRIDE : 1;
-}
-
 static result walk(walker *w, uint32_t count, camera *cameras)
 {
-    const uint32_t stride = stride_of(w->style);
+    const uint32_t stride = w->gait.stride;
     gaze g = {.yaw = w->heading};
     way on = {0};
     result done = RESULT_OK;
     for (uint32_t frame = 0; frame < count * stride && done == RESULT_OK; ++frame) {
         turn_gaze(w, &g, frame);
-        if (w->style == WALK_TURN) g.yaw = remainder(frame * SPIN_DEG * (PI / 180), 2 * PI);
+        if (w->gait.spin_deg > 0) g.yaw = remainder(frame * w->gait.spin_deg * (PI / 180), 2 * PI);
         if (frame % stride == 0) cameras[frame / stride] = auto_camera(w->a, w->at, g.yaw, g.pitch);
         done = walk_frame(w, &on);
     }
@@ -303,7 +317,7 @@ static void bound_region(walker *w)
 }
 
 // Models: anywhere around, at eye height over the lowest place, or half way up what is lower than a person.
-static eye start_of(walker *w, uint32_t i)
+static eye place_of(walker *w, uint32_t i)
 {
     auto_views *a = w->a;
     if (a->places.count) return ((const eye *)a->places.items)[i % a->places.count];
@@ -312,6 +326,13 @@ static eye start_of(walker *w, uint32_t i)
     eye e;
     for (int k = 0; k < 3; ++k) e.at[k] = random_between(&a->random, w->low[k], w->high[k]);
     e.at[1] = fmin(a->low[1] + AUTO_EYE_HEIGHT_M, (a->low[1] + a->high[1]) / 2);
+    return e;
+}
+
+static eye start_of(walker *w, uint32_t i)
+{
+    eye e = place_of(w, i);
+    e.at[1] += w->gait.eye_m - AUTO_EYE_HEIGHT_M;
     return e;
 }
 
@@ -346,10 +367,10 @@ static result try_start(walker *w, const eye *e, double heading, uint32_t frames
     result done = begin(w, e, heading);
     for (uint32_t frame = 0; frame < frames && done == RESULT_OK; ++frame) {
         done = walk_frame(w, &on);
-        if (w->style == WALK_STREET) sides += sides_near(w);
+        if (w->gait.ground == ON_GROUND) sides += sides_near(w);
     }
     for (uint32_t i = 0; i < w->visit_slots; ++i) cells += w->visits[i].count != 0;
-    *out_score = w->style == WALK_STREET ? (uint32_t)((uint64_t)sides * cells / (frames + 1)) + 1 : cells;
+    *out_score = w->gait.ground == ON_GROUND ? (uint32_t)((uint64_t)sides * cells / (frames + 1)) + 1 : cells;
     return done;
 }
 
@@ -357,7 +378,7 @@ static int is_start(const walker *w, const eye *e)
 {
     double at[3] = {e->at[0], e->at[1], e->at[2]};
     if (!is_free(w, e->at) || (!w->a->scene->is_map && free_space_is_enclosed(w->a->space, e->at))) return 0;
-    return w->style != WALK_STREET || (isinf(free_space_along(w->a->space, e->at, (axis_ray){1, 1})) && is_on_street(w, at));
+    return w->gait.ground == IN_AIR || (isinf(free_space_along(w->a->space, e->at, (axis_ray){1, 1})) && is_on_street(w, at));
 }
 
 static int lower_first(const void *left, const void *right)
@@ -371,7 +392,7 @@ static double highest_start(walker *w)
 {
     double heights[STREET_TRIES];
     uint32_t count = 0;
-    for (uint32_t i = 0; w->style == WALK_STREET && i < STREET_TRIES; ++i) {
+    for (uint32_t i = 0; w->gait.ground == ON_GROUND && i < STREET_TRIES; ++i) {
         const eye e = start_of(w, i);
         if (is_start(w, &e)) heights[count++] = e.at[1];
     }
@@ -384,7 +405,8 @@ static double highest_start(walker *w)
 static result find_start(walker *w, uint32_t frames, eye *out, double *out_heading, uint32_t *out_score)
 {
     const double highest = highest_start(w);
-    const uint32_t tries = w->style == WALK_STREET ? STREET_TRIES : START_TRIES, wanted = w->style == WALK_STREET ? STREETS_WALKED : STARTS_WALKED;
+    const int on_ground = w->gait.ground == ON_GROUND;
+    const uint32_t tries = on_ground ? STREET_TRIES : START_TRIES, wanted = on_ground ? STREETS_WALKED : STARTS_WALKED;
     uint32_t good = 0;
     for (uint32_t i = 0; i < tries && good < wanted; ++i) {
         const eye e = start_of(w, i);
@@ -418,20 +440,20 @@ static result walk_from_best(walker *w, uint32_t count, camera *cameras)
     eye start;
     double heading = 0;
     uint32_t score = 0;
-    const uint64_t frames = (uint64_t)count * stride_of(w->style);
+    const uint64_t frames = (uint64_t)count * w->gait.stride;
     result done = find_start(w, frames < TRIAL_FRAMES ? (uint32_t)frames : TRIAL_FRAMES, &start, &heading, &score);
-    if (done == RESULT_OK && score == 0 && w->style == WALK_STREET)
-        return report_error(w->a->report, w->a->scene->path, 0, "no place on the ground under the open sky has room to walk; use auto:walk:%u", count);
+    if (done == RESULT_OK && score == 0 && w->gait.ground == ON_GROUND)
+        return report_error(w->a->report, w->a->scene->path, 0, "no place on the ground under the open sky has room to %s; use auto:walk:%u",
+                            w->gait.back == BACK_REVERSING ? "drive" : "walk", count);
     if (done == RESULT_OK && score == 0) start = start_beside(w);
     if (done == RESULT_OK) done = begin(w, &start, heading);
     return done == RESULT_OK ? walk(w, count, cameras) : done;
 }
 
-static result make(auto_views *a, walk_style style, uint32_t count, camera *cameras)
+static result make(auto_views *a, const gait *g, uint32_t count, camera *cameras)
 {
-    walker w = {.a = a, .style = style, .clearance = (style == WALK_STREET ? STREET_CLEARANCE_M : AUTO_CLEARANCE_M) + ROUNDING_M,
-                .trail = buffer_make(a->memory, sizeof(eye)), .visit_slots = 1024};
-    while (w.visit_slots < 2 * ((uint64_t)count * stride_of(style) + 2)) w.visit_slots *= 2;
+    walker w = {.a = a, .gait = *g, .clearance = g->clearance_m + ROUNDING_M, .trail = buffer_make(a->memory, sizeof(eye)), .visit_slots = 1024};
+    while (w.visit_slots < 2 * ((uint64_t)count * g->stride + 2)) w.visit_slots *= 2;
     w.visits = memory_alloc_zeroed(a->memory, w.visit_slots, sizeof *w.visits);
     const result done = w.visits ? walk_from_best(&w, count, cameras) : RESULT_NO_MEMORY;
     memory_free(a->memory, w.visits, w.visit_slots, sizeof *w.visits);
@@ -441,15 +463,20 @@ static result make(auto_views *a, walk_style style, uint32_t count, camera *came
 
 result auto_walk_make(auto_views *a, uint32_t count, camera *cameras)
 {
-    return make(a, WALK_AIR, count, cameras);
+    return make(a, &WALK, count, cameras);
 }
 
 result auto_street_make(auto_views *a, uint32_t count, camera *cameras)
 {
-    return make(a, WALK_STREET, count, cameras);
+    return make(a, &STREET, count, cameras);
+}
+
+result auto_drive_make(auto_views *a, uint32_t count, camera *cameras)
+{
+    return make(a, &DRIVE, count, cameras);
 }
 
 result auto_turn_make(auto_views *a, uint32_t count, camera *cameras)
 {
-    return make(a, WALK_TURN, count, cameras);
+    return make(a, &TURN, count, cameras);
 }

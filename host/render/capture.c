@@ -1,7 +1,7 @@
 // Pictures of items taken: from the frame's eye or another through a parallelogram, as which they are shown (picture_show.c).
 // SPDX-License-Identifier: MIT
 // Invariant: a capture that can't be taken leaves its slot empty, and showing an empty slot draws the items themselves.
-#include "gl.h"
+#include "levels.h"
 
 #include <math.h>
 #include <string.h>
@@ -61,14 +61,17 @@ static void draw_geometry(renderer *g, const capture_job *j)
     if (c->run_count == 0) return;
     clip_make(g, &(clip_request){c->clip_planes, c->clip_plane_count, j->zone, j->view}, &clip);
     clip_begin(&clip);
-    const draw_pass pass = {.view = j->view, .planes = clip.count ? (const GLfloat(*)[4])clip.planes : NULL};
+    const draw_pass pass = {.view = j->view, .planes = clip.count ? (const GLfloat(*)[4])clip.planes : NULL, .level = levels_find(j->layout, (double)c->detail_m)};
     frame_draw_runs(g, &pass, &(layout_runs){j->layout, j->zone, c->runs, c->run_count});
     clip_end(&clip);
 }
 
+// The barrier waits for nothing on a GPU. Mesa's llvmpipe finishes what is drawn: captures of which several were under way at once stay marked
+// as being drawn until so many are again, and each draw that samples one of them would end the pass (8 us).
 void capture_begin(renderer *g, const picture_slot *s)
 {
     const GLfloat far = 0, none[4] = {0};
+    glTextureBarrier();
     state_framebuffer(g, s->framebuffer, s->width_px, s->height_px);
     frame_state_pass(g, BLEND_NONE, DEPTH_ON);
     glClearBufferfv(GL_COLOR, 0, none);
@@ -83,7 +86,6 @@ static void draw_capture(renderer *g, const capture_job *j, const picture_slot *
         const picture_slot *part = slot_find(j->layout, j->zone, j->capture->slots[i]);
         if (part && part != s && slot_holds(g, part)) picture_draw(g, part, j->view);
     }
-    slot_dilate(g, s);
 }
 
 // Colours mean something in the modes for people only; layers are counted, and owners found, on geometry.
@@ -134,6 +136,7 @@ void renderer_capture(renderer *g, render_layout *l, uint32_t zone, const cull_c
     memcpy(v.eye, s->eye, sizeof v.eye);
     if (!parallelogram_view(s, &v)) return;
     draw_capture(g, &(capture_job){l, capture, &v, zone}, s);
+    outline_want(g, s);
     s->filled = 1;
     l->pictures.captures++;
     l->pictures.pixels_captured += (uint64_t)s->width_px * s->height_px;

@@ -150,20 +150,32 @@ static void run_small_pictures(bench_bed *b)
     for (int i = 0; i < PICTURES; ++i) picture_draw(b->g, &b->smalls[i % SMALLS], &b->view);
 }
 
-static void capture(bench_bed *b, const picture_slot *s)
+static void capture(bench_bed *b, picture_slot *s)
 {
     capture_begin(b->g, s);
     draw_mesh(b, FINE_INDICES, 6);
-    slot_dilate(b->g, s);
+    outline_want(b->g, s);
 }
 
 static void run_small_captures(bench_bed *b)
 {
-    for (int i = 0; i < CAPTURES; ++i) capture(b, &b->smalls[i % SMALLS]);
+    for (int i = 0; i < CAPTURES; ++i) {
+        capture(b, &b->smalls[i % SMALLS]);
+        if (i % SMALLS == SMALLS - 1) outlines_trace(b->g);
+    }
 }
 
-static void run_capture(bench_bed *b) { capture(b, &b->whole); }
-static void run_deep_capture(bench_bed *b) { capture(b, &b->deep); }
+static void run_capture(bench_bed *b)
+{
+    capture(b, &b->whole);
+    outlines_trace(b->g);
+}
+
+static void run_deep_capture(bench_bed *b)
+{
+    capture(b, &b->deep);
+    outlines_trace(b->g);
+}
 
 static double timed_ns(bench_bed *b, void (*run)(bench_bed *))
 {
@@ -190,12 +202,12 @@ static void measure(bench_bed *b, cull_costs *out)
     const double pixels = (double)SIDE_PX * SIDE_PX, nothing = timed_ns(b, run_nothing);
     const double coarse = timed_ns(b, run_coarse), captured = timed_ns(b, run_capture); // and with it what is shown then
     run_deep_capture(b);
+    out->capture_ns = over(timed_ns(b, run_small_captures), 0, CAPTURES);
     out->polygon_ns = over(timed_ns(b, run_fine), coarse, FINE_INDICES / 3 - 2);
     out->pixel_ns = over(coarse, nothing, pixels);
     out->picture_ns = over(timed_ns(b, run_small_pictures), nothing, PICTURES);
     out->picture_pixel_ns = over(timed_ns(b, run_picture), nothing, pixels);
     out->picture_depth_pixel_ns = over(timed_ns(b, run_deep_picture), nothing, pixels);
-    out->capture_ns = over(timed_ns(b, run_small_captures), 0, CAPTURES);
     out->capture_pixel_ns = over(captured, coarse - nothing, pixels);
 }
 

@@ -1,7 +1,7 @@
 // Draws of a frame: ranges of many zones gathered, one multi-draw for all until something needs the picture or the cut differs.
 // SPDX-License-Identifier: MIT
 // Invariant: nothing here allocates but frame_reserve; what waits is drawn before anyone looks at the depth.
-#include "gl.h"
+#include "levels.h"
 
 #include <assert.h>
 #include <math.h>
@@ -137,7 +137,7 @@ void frame_flush(renderer *g)
     tests_submit(g);
 }
 
-static void range_of(const layout_runs *r, uint32_t i, uint32_t *out_first, uint32_t *out_count)
+static void range_of(const layout_runs *r, const uint32_t *first_index, uint32_t i, uint32_t *out_first, uint32_t *out_count)
 {
     const render_layout *l = r->layout;
     const cull_run run = r->runs[i];
@@ -145,19 +145,20 @@ static void range_of(const layout_runs *r, uint32_t i, uint32_t *out_first, uint
     const uint32_t place = layout_first_place(l, r->zone) + run.first;
     assert(run.count >= 1 && run.count <= count && run.first <= count - run.count);
     (void)count;
-    *out_first = l->first_index[place];
-    *out_count = l->first_index[place + run.count] - *out_first;
+    *out_first = first_index[place];
+    *out_count = first_index[place + run.count] - *out_first;
 }
 
 void frame_draw_runs(renderer *g, const draw_pass *p, const layout_runs *r)
 {
     ranges *a = &g->scene.ranges;
+    const uint32_t *first_index = p->level ? p->level->first_index : r->layout->first_index;
     if (!frame_pass(g, p, 0)) return;
-    state_vertices(g, r->layout->vertices);
+    state_vertices(g, p->level ? p->level->vertices : r->layout->vertices);
     frame_state_pass(g, BLEND_NONE, DEPTH_ON);
     for (uint32_t i = 0; i < r->count; ++i) {
         uint32_t first, count;
-        range_of(r, i, &first, &count);
+        range_of(r, first_index, i, &first, &count);
         if (ranges_add(a, first, count)) continue;
         ranges_draw(g, a); // more runs than items: someone repeats himself
         ranges_add(a, first, count);
@@ -176,7 +177,7 @@ static void gather(renderer *g, const layout_runs *r)
     f->pending_cut = cut;
     for (uint32_t i = 0; i < r->count; ++i) {
         uint32_t first, count;
-        range_of(r, i, &first, &count);
+        range_of(r, r->layout->first_index, i, &first, &count);
         if (ranges_add(a, first, count)) continue;
         draw_pending(g);
         ranges_add(a, first, count);

@@ -86,7 +86,6 @@ result renderer_begin(renderer *g, const frame_request *q, report *r)
     f->draw_calls = f->state_changes = f->translucent_count = f->may_repeat = 0;
     f->open = 1;
     f->number++;
-    for (render_layout *l = g->layouts; l; l = l->next) l->shown_count = 0;
     bind_blocks(g);
     frame_bind(g);
     clear(g);
@@ -112,7 +111,6 @@ void renderer_end(renderer *g)
 {
     assert(g->frame.open);
     frame_flush(g);
-    pictures_draw_fringes(g);
     translucent_draw(g);
     if (g->frame.request.mode == RENDER_OVERDRAW) draw_heat(g);
     if (g->frame.request.mode == RENDER_IDS) g->id_target = g->frame.target;

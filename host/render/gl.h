@@ -21,7 +21,7 @@ typedef enum program_kind {
     PROGRAM_OVERDRAW,
     PROGRAM_BOXES,
     PROGRAM_PICTURE,
-    PROGRAM_DILATE,
+    PROGRAM_OUTLINE,
     PROGRAM_HEAT,
     PROGRAM_OVERLAY,
     PROGRAM_KINDS
@@ -35,9 +35,8 @@ enum { // what a program must know of the scene or the pass; compiled in, on fir
     VARIANT_KEEP_DEPTH = 1u << 4,
     VARIANT_MOVERS = 1u << 5, // vertices of movers go where their pose has them
     VARIANT_LINEAR = 1u << 6, // a picture's colours between its texels
-    VARIANT_FRINGE = 1u << 7, // of a picture what stands about its mask
-    VARIANT_FLAT = 1u << 8,   // some vertices have no normal: shaded as their face lies
-    VARIANTS = 1u << 9
+    VARIANT_FLAT = 1u << 7,   // some vertices have no normal: shaded as their face lies
+    VARIANTS = 1u << 8
 };
 
 enum { // vertex words: material below, then
@@ -53,6 +52,7 @@ enum { // storage buffer bindings
     BIND_ITEMS = 2,
     BIND_ZONES = 3,
     BIND_POSES = 4,
+    BIND_OUTLINES = 5,
 };
 
 enum { // uniform locations of scene.vert and frame.frag
@@ -76,8 +76,8 @@ typedef enum colour_writes { COLOUR_ON, COLOUR_OFF } colour_writes;
 typedef enum depth_writes { DEPTH_ON, DEPTH_OFF } depth_writes;
 typedef enum back_faces { BACK_DRAWN, BACK_CULLED } back_faces;
 typedef enum depth_offset { OFFSET_NONE, OFFSET_FARTHER, OFFSET_NEARER } depth_offset;
-// BEHIND: one depth, behind all that has a depth of its own; FRINGE: behind that.
-typedef enum depth_range { RANGE_OWN, RANGE_BEHIND, RANGE_FRINGE } depth_range;
+// BEHIND: one depth, behind all that has a depth of its own.
+typedef enum depth_range { RANGE_OWN, RANGE_BEHIND } depth_range;
 
 typedef struct gl_state {
     GLuint program, vertices, framebuffer;
@@ -161,6 +161,8 @@ void item_box(const renderer *g, uint32_t item, mover_box *out); // of any item,
 
 typedef struct vertex_buffers { GLuint positions, words, triangles, texcoords, normals, paints, others, movers; } vertex_buffers; // 0: not needed
 
+typedef struct scene_levels scene_levels; // levels.c
+
 typedef struct scene_gpu {
     const scene *scene; // NULL: none
     GLuint vertices;    // vertex array, with the index buffer in the scene's order
@@ -180,6 +182,7 @@ typedef struct scene_gpu {
     GLuint counts;             // of the floor, item_total words
     ranges ranges;
     posed_movers poses;
+    scene_levels *levels; // NULL: nobody asked
 } scene_gpu;
 
 void scene_release(renderer *g);
@@ -274,6 +277,7 @@ typedef struct layout_zone {
 
 typedef struct picture_slot picture_slot;
 typedef struct layout_pieces layout_pieces; // pieces.h
+typedef struct layout_level layout_level; // levels.h
 struct render_layout {
     renderer *g;
     render_layout *next; // of the renderer's
@@ -283,11 +287,11 @@ struct render_layout {
     uint32_t *first_index; // of each place, movers behind; one more at the end
     uint32_t *see_through; // places before this one that are; NULL: none is
     picture_slot *slots;
-    picture_slot **shown;  // slot_count: of this frame, each once
     render_picture_counts pictures;
     layout_pieces *pieces; // NULL: see-through items go by distance
+    layout_level *levels;  // level_count, finest first
     uint32_t zone_count, place_count, total, slot_count; // total: places and movers
-    uint32_t shown_count;
+    uint32_t level_count;
 };
 
 #define LAYOUT_MOVERS UINT32_MAX // in the place of a zone: what stands behind all zones
@@ -336,6 +340,7 @@ typedef struct frame_state {
 typedef struct draw_pass {
     const viewpoint *view;
     const GLfloat (*planes)[4]; // four, relative to the eye; NULL: none
+    const layout_level *level;  // NULL: the scene itself
 } draw_pass;
 
 // Planes of a zone as the shaders take them. Between begin and end as many cut as there are.
@@ -363,26 +368,32 @@ void translucent_note(renderer *g, const layout_runs *r);
 void translucent_draw(renderer *g);
 void translucent_sort(translucent_item *items, uint32_t count); // by rank, then farthest first, then by global id
 
-// ---- Pictures (picture_slots.c, capture.c, picture_show.c) ----
+// ---- Pictures (picture_slots.c, picture_outline.c, capture.c, picture_show.c) ----
 
 struct picture_slot {
     GLuint framebuffer, colour, depth;
     uint32_t width_px, height_px, keep_depth, filled;
     render_mode mode; // of the frame that it was taken in: its colours mean nothing in another
     faces faces;
-    uint32_t used;   // number of the frame that last took or showed it
-    uint32_t listed; // number of the frame whose list it stands in
-    uint64_t bytes;  // of its textures
+    uint32_t used;  // number of the frame that last took or showed it
+    uint64_t bytes; // of its textures
     double corner[3], right[3], up[3], eye[3]; // that it was taken through and from, relative to the scene's origin
     double shown[3][3];                        // corner, right and up that it is shown as
     double near_fraction; // distance of depth 1, in units of the parallelogram's
+    uint32_t outline;              // its place among the outlines, from 1; 0: it has none
+    uint32_t strips, strip_texels; // that its outline tells of, and columns of each; 0: not traced, shown whole
+    picture_slot *next_untraced;
 };
 
-enum { SLOTS_MOST = 65536 };
+enum { SLOTS_MOST = 65536, OUTLINES_MOST = 4096, OUTLINE_STRIPS = 32 };
 typedef struct picture_shared {
     GLuint vertices; // of a draw without attributes
-    GLuint spare_depth, spare_colour; // for captures that keep none; for what is dilated
-    uint32_t spare_width_px, spare_height_px; // of both
+    GLuint spare_depth; // for captures that keep none
+    uint32_t spare_width_px, spare_height_px;
+    GLuint outlines;                         // buffer: of all slots, OUTLINE_STRIPS each
+    uint32_t outline_count, outline_next;    // taken; where the search for a free one begins
+    uint8_t outline_is_taken[OUTLINES_MOST]; // beyond so many, pictures are shown whole
+    picture_slot *untraced;
     picture_options options;
 } picture_shared;
 
@@ -393,11 +404,17 @@ void capture_begin(renderer *g, const picture_slot *s); // bound and cleared
 // Textures and framebuffer of that size, within the memory that the layout's pictures may take. 0: none.
 int slot_prepare(renderer *g, render_layout *l, picture_slot *s, const cull_capture *c);
 void slot_empty(renderer *g, picture_slot *s); // and its memory given back
-void slot_dilate(renderer *g, const picture_slot *s); // colours go on for a texel outside the mask
 void picture_as_taken(picture_slot *s); // is how it is shown from now on
 void picture_set3(double out[3], cull_vec3 v, const double offset[3]);
 void picture_draw(renderer *g, const picture_slot *s, const viewpoint *v); // into what is bound
-void pictures_draw_fringes(renderer *g); // of those shown in the frame, where nothing else stands
+
+// Outlines (picture_outline.c)
+void outline_want(renderer *g, picture_slot *s);  // of what was just taken
+void outline_drop(renderer *g, picture_slot *s);
+void outlines_trace(renderer *g);                 // of all that are wanted, with the frame's framebuffer bound
+// For the draw that follows: how many strips; 0: it is drawn whole.
+uint32_t outline_set(const picture_slot *s, GLuint program);
+void outlines_close(renderer *g);
 
 void pictures_forget_zone(renderer *g, render_layout *l, uint32_t zone);
 void pictures_close_layout(renderer *g, render_layout *l);

@@ -1,6 +1,7 @@
 // Layouts: the index buffer in the order of every zone's chain, movers behind, and tables that turn runs into index ranges.
 // SPDX-License-Identifier: MIT
 // Invariant: an item stands as often as zones list it; a zone's part lies together, so a swap rewrites that part alone.
+#include "levels.h"
 #include "pieces.h"
 
 #include <assert.h>
@@ -205,6 +206,7 @@ result render_layout_reorder(render_layout *l, uint32_t zone, const uint32_t *it
     tests_forget_zone(g, l, zone);
     pictures_forget_zone(g, l, zone);
     pieces_forget_zone(l, zone);
+    levels_close_layout(l); // in the old order
     return gl_check(g, r, "laying out a zone anew");
 }
 
@@ -216,6 +218,7 @@ void render_layout_close(render_layout *l)
     for (uint32_t zone = 0; l->vertices && zone < l->zone_count; ++zone) tests_forget_zone(g, l, zone);
     pictures_close_layout(g, l);
     pieces_close(l);
+    levels_close_layout(l);
     render_layout **at = &g->layouts;
     while (*at != l) at = &(*at)->next;
     *at = l->next;

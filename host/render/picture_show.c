@@ -39,46 +39,22 @@ static void set_uniforms(const picture_slot *s, const viewpoint *v, GLuint progr
     glProgramUniform3fv(program, 3, 1, up);
 }
 
-typedef struct picture_pass {
-    uint32_t variant;
-    depth_range range;
-} picture_pass;
-
-static void draw(renderer *g, const picture_slot *s, const viewpoint *v, const picture_pass *p)
+void picture_draw(renderer *g, const picture_slot *s, const viewpoint *v)
 {
-    const GLuint program = program_find(g, PROGRAM_PICTURE, p->variant);
+    const uint32_t variant = (g->pictures.options.filter == PICTURE_LINEAR ? VARIANT_LINEAR : 0) | (s->keep_depth ? VARIANT_KEEP_DEPTH : 0);
+    const GLuint program = program_find(g, PROGRAM_PICTURE, variant);
     if (!program) return;
     if (!g->pictures.vertices) glCreateVertexArrays(1, &g->pictures.vertices);
     state_program(g, program);
     state_vertices(g, g->pictures.vertices);
-    state_pass_at(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, BACK_DRAWN, OFFSET_NONE}, p->range);
+    state_pass_at(g, &(pass_state){GL_GREATER, DEPTH_ON, COLOUR_ON, BLEND_NONE, BACK_DRAWN, OFFSET_NONE}, s->keep_depth ? RANGE_OWN : RANGE_BEHIND);
     set_uniforms(s, v, program);
-    if (p->variant & VARIANT_KEEP_DEPTH) set_taken_uniforms(s, v, program);
+    if (s->keep_depth) set_taken_uniforms(s, v, program);
     glBindTextureUnit(0, s->colour);
-    if (p->variant & VARIANT_KEEP_DEPTH) glBindTextureUnit(1, s->depth);
-    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    if (s->keep_depth) glBindTextureUnit(1, s->depth);
+    const uint32_t strips = outline_set(s, program);
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, strips ? 2 * ((GLsizei)strips + 1) : 4);
     g->frame.draw_calls++;
-}
-
-void picture_draw(renderer *g, const picture_slot *s, const viewpoint *v)
-{
-    const uint32_t linear = g->pictures.options.filter == PICTURE_LINEAR ? VARIANT_LINEAR : 0;
-    const picture_pass p = {linear | (s->keep_depth ? VARIANT_KEEP_DEPTH : 0), s->keep_depth ? RANGE_OWN : RANGE_BEHIND};
-    draw(g, s, v, &p);
-}
-
-// An outline is known to half a texel, and its place to error_px: seen against nothing it may leave a gap. So a picture goes on for half a
-// pixel beyond its mask where nothing else stands: what errs by less leaves no pixel open that geometry covers, and covers none that is a
-// whole pixel from it; farther would trade gaps for spills. Drawn last and behind all, so it covers no other picture, and the depth
-// drawn by now spares the rest.
-void pictures_draw_fringes(renderer *g)
-{
-    frame_bind(g);
-    for (render_layout *l = g->layouts; l; l = l->next) {
-        for (uint32_t i = 0; i < l->shown_count; ++i)
-            if (l->shown[i]->filled) draw(g, l->shown[i], &g->frame.view, &(picture_pass){VARIANT_FRINGE, RANGE_FRINGE});
-        l->shown_count = 0;
-    }
 }
 
 // ---- Its area in the frame ----
@@ -143,15 +119,6 @@ static double area_px(const renderer *g, const picture_slot *s)
 
 // ---- In a frame ----
 
-static void list_shown(render_layout *l, picture_slot *s)
-{
-    const uint32_t frame = l->g->frame.number;
-    s->used = frame;
-    if (s->listed == frame) return;
-    s->listed = frame;
-    l->shown[l->shown_count++] = s;
-}
-
 static void place(const renderer *g, uint32_t zone, const cull_picture *p, picture_slot *s)
 {
     static const double nowhere[3] = {0, 0, 0};
@@ -183,11 +150,12 @@ void renderer_show(renderer *g, render_layout *l, uint32_t zone, const cull_pict
     const pixel_box cut = frame_cut(g, zone);
     frame_flush(g);
     frame_bind(g);
+    outlines_trace(g);
     place(g, zone, picture, s);
     cut_begin(g, &cut);
     picture_draw(g, s, &g->frame.view);
     cut_end(g, &cut);
-    list_shown(l, s);
+    s->used = g->frame.number;
     l->pictures.shown++;
     l->pictures.pixels_shown += area_px(g, s);
     translucent_note(g, &(layout_runs){l, zone, picture->runs, picture->run_count}); // what is translucent is in no picture

@@ -22,7 +22,8 @@ void slot_empty(renderer *g, picture_slot *s)
     glDeleteFramebuffers(1, &s->framebuffer);
     glDeleteTextures(1, &s->colour);
     glDeleteTextures(1, &s->depth);
-    *s = (picture_slot){.listed = s->listed};
+    outline_drop(g, s);
+    *s = (picture_slot){0};
 }
 
 // ---- Memory ----
@@ -91,22 +92,20 @@ static GLenum colour_format(const renderer *g)
     return g->pictures.options.format == PICTURE_8_BITS ? GL_RGBA8 : GL_RGB5_A1;
 }
 
-// What captures need while they are taken: one of each, as large as was ever needed.
-static void prepare_spares(renderer *g, uint32_t width_px, uint32_t height_px)
+// What captures need while they are taken, as large as was ever needed.
+static void prepare_spare(renderer *g, uint32_t width_px, uint32_t height_px)
 {
     picture_shared *p = &g->pictures;
     if (p->spare_depth && p->spare_width_px >= width_px && p->spare_height_px >= height_px) return;
     glDeleteTextures(1, &p->spare_depth);
-    glDeleteTextures(1, &p->spare_colour);
     if (width_px > p->spare_width_px) p->spare_width_px = width_px;
     if (height_px > p->spare_height_px) p->spare_height_px = height_px;
     p->spare_depth = texture(GL_DEPTH_COMPONENT32F, p->spare_width_px, p->spare_height_px);
-    p->spare_colour = texture(colour_format(g), p->spare_width_px, p->spare_height_px);
 }
 
 int slot_textures(renderer *g, picture_slot *s, const cull_capture *c)
 {
-    prepare_spares(g, c->width_px, c->height_px);
+    prepare_spare(g, c->width_px, c->height_px);
     s->bytes = (uint64_t)c->width_px * c->height_px * texel_bytes(g, c->keep_depth);
     s->width_px = c->width_px;
     s->height_px = c->height_px;
@@ -134,21 +133,6 @@ int slot_prepare(renderer *g, render_layout *l, picture_slot *s, const cull_capt
     return 0;
 }
 
-void slot_dilate(renderer *g, const picture_slot *s)
-{
-    const GLuint program = program_find(g, PROGRAM_DILATE, 0), spare = g->pictures.spare_colour;
-    if (!program) return;
-    glCopyImageSubData(s->colour, GL_TEXTURE_2D, 0, 0, 0, 0, spare, GL_TEXTURE_2D, 0, 0, 0, 0, (GLsizei)s->width_px, (GLsizei)s->height_px, 1);
-    state_framebuffer(g, s->framebuffer, s->width_px, s->height_px);
-    state_program(g, program);
-    state_vertices(g, g->scene.vertices); // a core context draws nothing without one
-    state_pass(g, &(pass_state){GL_ALWAYS, DEPTH_OFF, COLOUR_ON, BLEND_NONE, BACK_DRAWN, OFFSET_NONE});
-    glProgramUniform2i(program, 0, (GLint)s->width_px, (GLint)s->height_px);
-    glBindTextureUnit(0, spare);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    g->frame.draw_calls++;
-}
-
 // ---- Room ----
 
 void pictures_forget_zone(renderer *g, render_layout *l, uint32_t zone)
@@ -167,10 +151,8 @@ void pictures_close_layout(renderer *g, render_layout *l)
 {
     for (uint32_t i = 0; i < l->slot_count; ++i) give_back(g, l, &l->slots[i]);
     memory_free(g->memory, l->slots, l->slot_count, sizeof *l->slots);
-    memory_free(g->memory, l->shown, l->slot_count, sizeof(picture_slot *));
     l->slots = NULL;
-    l->shown = NULL;
-    l->slot_count = l->shown_count = 0;
+    l->slot_count = 0;
 }
 
 result render_layout_slots(render_layout *l, const uint32_t *slot_counts, report *r)
@@ -180,15 +162,12 @@ result render_layout_slots(render_layout *l, const uint32_t *slot_counts, report
     for (uint32_t zone = 0; zone < l->zone_count; ++zone) total += slot_counts[zone];
     if (total > SLOTS_MOST) return report_error(r, NULL, 0, "cullers ask for %llu pictures; %u is the most", (unsigned long long)total, (unsigned)SLOTS_MOST);
     picture_slot *slots = total ? memory_alloc_zeroed(g->memory, (size_t)total, sizeof *slots) : NULL;
-    picture_slot **shown = total ? memory_alloc_zeroed(g->memory, (size_t)total, sizeof(picture_slot *)) : NULL;
-    if (total && (!slots || !shown)) {
+    if (total && !slots) {
         memory_free(g->memory, slots, (size_t)total, sizeof *slots);
-        memory_free(g->memory, shown, (size_t)total, sizeof(picture_slot *));
         return report_no_memory(r, NULL);
     }
     pictures_close_layout(g, l);
     l->slots = slots;
-    l->shown = shown;
     l->slot_count = (uint32_t)total;
     l->pictures = (render_picture_counts){0};
     for (uint32_t zone = 0, first = 0; zone < l->zone_count; ++zone) {
@@ -204,8 +183,7 @@ void renderer_picture_options(renderer *g, const picture_options *o)
     assert(!g->frame.open);
     renderer_forget_pictures(g);
     glDeleteTextures(1, &g->pictures.spare_depth);
-    glDeleteTextures(1, &g->pictures.spare_colour);
-    g->pictures.spare_depth = g->pictures.spare_colour = 0;
+    g->pictures.spare_depth = 0;
     g->pictures.spare_width_px = g->pictures.spare_height_px = 0;
     g->pictures.options = *o;
     g->costs_of = NULL; // they are others now
@@ -229,6 +207,6 @@ void pictures_close(renderer *g)
 {
     glDeleteVertexArrays(1, &g->pictures.vertices);
     glDeleteTextures(1, &g->pictures.spare_depth);
-    glDeleteTextures(1, &g->pictures.spare_colour);
+    outlines_close(g);
     g->pictures = (picture_shared){0};
 }

@@ -23,7 +23,7 @@ static program_text text_of(program_kind kind)
     case PROGRAM_OVERDRAW: return (program_text){scene_vert, frame_frag, "#define OVERDRAW\n", 1};
     case PROGRAM_BOXES: return (program_text){boxes_vert, boxes_frag, "", 0};
     case PROGRAM_PICTURE: return (program_text){picture_vert, picture_frag, "", 0};
-    case PROGRAM_DILATE: return (program_text){heat_vert, dilate_frag, "", 0};
+    case PROGRAM_OUTLINE: return (program_text){outline_vert, "void main() {}\n", "", 0};
     case PROGRAM_OVERLAY: return (program_text){overlay_vert, overlay_frag, "", 0};
     default: return (program_text){heat_vert, heat_frag, "", 0};
     }
@@ -65,12 +65,11 @@ static GLuint build(renderer *g, program_kind kind, uint32_t variant)
     const program_text text = text_of(kind);
     char head[704];
     snprintf(head, sizeof head,
-             "#version 450 core\n#define WORD_TRANSLUCENT %uu\n#define WORD_CUT_OUT %uu\n#define WORD_SKY %uu\n#define WORD_TWO_SIDED %uu\n%s%s%s%s%s%s%s%s%s%s", (unsigned)WORD_TRANSLUCENT,
+             "#version 450 core\n#define WORD_TRANSLUCENT %uu\n#define WORD_CUT_OUT %uu\n#define WORD_SKY %uu\n#define WORD_TWO_SIDED %uu\n%s%s%s%s%s%s%s%s%s", (unsigned)WORD_TRANSLUCENT,
              (unsigned)WORD_CUT_OUT, (unsigned)WORD_SKY, (unsigned)WORD_TWO_SIDED, text.define, variant & VARIANT_CUT_OUT ? "#define CUT_OUT\n" : "",
              variant & VARIANT_TRANSLUCENT ? "#define TRANSLUCENT\n" : "", variant & VARIANT_SIDES ? "#define SIDES\n" : "",
              variant & VARIANT_CLIP ? "#define CLIP\n" : "", variant & VARIANT_KEEP_DEPTH ? "#define KEEP_DEPTH\n" : "",
              variant & VARIANT_MOVERS ? "#define MOVERS\n" : "", variant & VARIANT_LINEAR ? "#define LINEAR\n" : "",
-             variant & VARIANT_FRINGE ? "#define FRINGE\n" : "",
              kind == PROGRAM_SHADED && variant & VARIANT_FLAT ? "#define FLAT\n#define EYE_POSITION\n" : "");
     const char *const light = kind == PROGRAM_SHADED ? light_glsl : "";
     const char *const vertex_parts[] = {head, light, text.vertex};

@@ -155,6 +155,10 @@ void renderer_check_slots(renderer *g, const render_layout *l, uint32_t zone, ui
 // Room for the pictures of a layout: slot_counts by zone, at most 65,536 together; none until then. A zone captures into
 // slots below its count; a capture that finds no slot is not taken, and showing it draws the items. Forgets what was there.
 result render_layout_slots(render_layout *l, const uint32_t *slot_counts, report *r);
+// Coarser triangles for captures (cull_capture.detail_m), until the layout closes or a zone of it is reordered; not within a frame. Made once a scene, which
+// takes some seconds a million triangles where it pays, and kept where they are far fewer: out->levels says which, as cullers are to be told. Never
+// called: captures draw every triangle. RESULT_NO_MEMORY: they do, too.
+result render_layout_levels(render_layout *l, report *r, cull_costs *out);
 void renderer_capture(renderer *g, render_layout *l, uint32_t zone, const cull_capture *capture);
 // What a picture shows goes on for half a pixel beyond its outline where nothing else stands in the end: an outline that errs by less leaves
 // no gap.

@@ -64,7 +64,7 @@ static void set_blend(blend how)
 // pictures of a frame: the test is GREATER, so of two at one depth the first stays in front. Above 2^-126 they are normal floats.
 static void set_range(depth_range range)
 {
-    static const double at[3] = {0, PICTURE_DEPTH, PICTURE_DEPTH * 0x1p-2};
+    static const double at[2] = {0, PICTURE_DEPTH};
     glDepthRange(at[range], range == RANGE_OWN ? 1 : at[range]);
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 // Invariant: each triangle's last vertex is its own and carries its global number, so the number reaches the fragments
 // flat, in any draw and any order of the index buffer. (gl_PrimitiveID needs a base per draw and is 1.5x slower on llvmpipe.)
-#include "gl.h"
+#include "levels.h"
 
 #include <string.h>
 
@@ -438,6 +438,7 @@ void scene_release(renderer *g)
     memory_free(g->memory, p->box_counts, p->item_total, sizeof *p->box_counts);
     ranges_close(&p->ranges, g->memory);
     poses_close(&p->poses, g->memory);
+    levels_release(g);
     frame_release(g);
     g->id_target = NULL; // its depth is of another scene
     g->costs_of = NULL;

@@ -105,11 +105,11 @@ static double pixels_of(const cut_request *q, const spot *s)
     return wide * 2 * scale * (s->half[1] + 0.2 * (s->half[0] + s->half[2]));
 }
 
-// Each pixel of the rectangle is looked up, what is transparent there too, and its fringe is a second picture.
+// Each pixel of the rectangle is looked up, what is transparent there too.
 static double showing_price(const cut_request *q, const spot *s)
 {
     const double pixels = pixels_of(q, s), shown = pixels < q->optics.pixels ? pixels : q->optics.pixels;
-    return 2 * (q->costs->picture_ns + shown * q->picture_pixel_ns);
+    return q->costs->picture_ns + shown * q->picture_pixel_ns;
 }
 
 static double picture_price(const cut_request *q, const lists_node *node, const spot *s)

@@ -15,6 +15,7 @@ const cull_option options_table[OPTION_COUNT] = {
     [OPTION_HIDDEN] = {"hidden", "tested", "tested shown", "pictures that geometry hides: tested: neither taken nor shown, where no filter stands behind; shown: as all"},
     [OPTION_BUDGET] = {"budget", "bounded", "bounded steady", "where a frame's time is spent: bounded: pictures are taken all the same; steady: older ones are shown, and what they are off is said"},
     [OPTION_MEMORY] = {"memory_mib", "256", NULL, "that the pictures of a view take at most, 1 to 65536; less where the host has less"},
+    [OPTION_DETAIL] = {"detail", "coarser", "coarser full", "items in pictures: coarser: with fewer polygons where that saves more than its error costs; full: with all"},
 };
 
 static cull_result refused(const cull_host *host, const char *key, const char *value, const char *legal)
@@ -78,10 +79,11 @@ cull_result options_read(const cull_host *host, const char *const *values, optio
 {
     static const char *const walks[] = {"rings", "bresenham", "tree"}, *const orders[] = {"rings", "slope"};
     static const char *const shows[] = {"quad", "centre", "geometry"}, *const switches[] = {"on", "off"};
-    static const char *const hiddens[] = {"tested", "shown"}, *const budgets[] = {"bounded", "steady"};
+    static const char *const hiddens[] = {"tested", "shown"}, *const budgets[] = {"bounded", "steady"}, *const details[] = {"coarser", "full"};
     const int walk = word_of(values[OPTION_WALK], walks, 3), order = word_of(values[OPTION_ORDER], orders, 2);
     const int shown = word_of(values[OPTION_SHOW], shows, 3), tree = word_of(values[OPTION_TREE], switches, 2);
     const int hidden = word_of(values[OPTION_HIDDEN], hiddens, 2), budget = word_of(values[OPTION_BUDGET], budgets, 2);
+    const int detail = word_of(values[OPTION_DETAIL], details, 2);
     if (!read_level(values[OPTION_LEVEL], &out->level)) return refused(host, "level", values[OPTION_LEVEL], "auto, or a number from 0 to 10");
     if (walk < 0) return refused(host, "walk", values[OPTION_WALK], "rings, tree or bresenham");
     if (order < 0) return refused(host, "order", values[OPTION_ORDER], "rings or slope");
@@ -91,12 +93,14 @@ cull_result options_read(const cull_host *host, const char *const *values, optio
     if (hidden < 0) return refused(host, "hidden", values[OPTION_HIDDEN], "tested or shown");
     if (budget < 0) return refused(host, "budget", values[OPTION_BUDGET], "bounded or steady");
     if (!read_mib(values[OPTION_MEMORY], &out->show.bytes_most)) return refused(host, "memory_mib", values[OPTION_MEMORY], "a number from 1 to 65536");
+    if (detail < 0) return refused(host, "detail", values[OPTION_DETAIL], "coarser or full");
     out->ways.walk = walk == 0 ? INVIEW_RINGS : walk == 1 ? INVIEW_BRESENHAM : INVIEW_TREE;
     out->ways.order = order == 0 ? INVIEW_BY_RINGS : INVIEW_BY_SLOPE;
     // The report's forms, and the tree of what is all geometry, are compared by themselves.
     out->show.show = shown == 2 || walk != 0 || order != 0 ? SHOW_GEOMETRY : shown == 0 ? SHOW_QUADS : SHOW_CENTRED;
     out->show.hidden = hidden == 0 ? SHOW_HIDDEN_TESTED : SHOW_HIDDEN_TOO;
     out->show.budget = budget == 0 ? SHOW_BOUNDED : SHOW_STEADY;
+    out->show.detail = detail == 0 ? SHOW_COARSER : SHOW_FULL;
     out->show.nodes = tree == 0 ? SHOW_TREE : SHOW_CELLS;
     return CULL_OK;
 }

@@ -6,7 +6,7 @@
 #include "inview.h"
 #include "show.h"
 
-enum { OPTION_LEVEL, OPTION_WALK, OPTION_ORDER, OPTION_SHOW, OPTION_TREE, OPTION_TOLERANCE, OPTION_HIDDEN, OPTION_BUDGET, OPTION_MEMORY, OPTION_COUNT }; // places in options_table
+enum { OPTION_LEVEL, OPTION_WALK, OPTION_ORDER, OPTION_SHOW, OPTION_TREE, OPTION_TOLERANCE, OPTION_HIDDEN, OPTION_BUDGET, OPTION_MEMORY, OPTION_DETAIL, OPTION_COUNT }; // places in options_table
 extern const cull_option options_table[OPTION_COUNT];
 
 typedef struct options {

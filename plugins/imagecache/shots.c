@@ -6,11 +6,13 @@
 
 #include <string.h>
 
-enum { TEXELS_MOST = 2048, HALVINGS = 6 };
+enum { TEXELS_MOST = 2048, HALVINGS = 10 };
 #define AHEAD_MOST 64.0  // frames: until then the eye has turned
 #define TAKEN_AT 0.9     // of the tolerance, where a picture is taken ahead of the eye: it is shown at once
 #define NEARER_MOST 0.85 // of the distance it was taken at: nearer, texels are magnified too much
 #define FARTHER_MOST 1.4
+#define TEXEL_PX 0.6        // side of a texel where it is shown: needles against the sky, thinner than a pixel, want more than one a pixel (2.5 dB in all)
+#define STRETCH_MOST 2.0    // that texels are made finer for: 45 degrees off; wide views have coarser ones beyond, or they would take a hundred times the memory
 #define ROOM 0.05          // of the distance: how much nearer texels are made for
 #define STALE_MOST 8.0     // tolerances that a stale picture may be off
 #define UNKNOWN -1.0f      // frames left of what was hidden before: looked at when it is seen
@@ -98,8 +100,10 @@ static void place_ahead(const cut_request *v, double frames, double out[3])
 }
 
 // As far ahead as the eye here still allows: then it lasts about twice as long.
-static bound_capture take_from(const shots_request *q, const bound_optics *optics, const cull_box *box, double eye[3])
+static bound_capture take_from(const shots_request *q, const bound_optics *optics, const shot *h, double eye[3])
 {
+    const cull_box *box = &h->box;
+    const double room = q->view->tolerance_px - detail_px((double)h->away_m, q->view->eye, box, optics);
     bound_capture best, tried;
     double low = 0, high = AHEAD_MOST;
     place_ahead(q->view, 0, eye);
@@ -110,7 +114,7 @@ static bound_capture take_from(const shots_request *q, const bound_optics *optic
         const double middle = i == 0 ? high : (low + high) / 2;
         place_ahead(q->view, middle, at);
         tried = bound_capture_of(at, box);
-        if (tried.nearest_depth > NEARER_MOST * best.nearest_depth && bound_turned_px(&tried, q->view->eye, optics) <= TAKEN_AT * q->view->tolerance_px) {
+        if (tried.nearest_depth > NEARER_MOST * best.nearest_depth && bound_turned_px(&tried, q->view->eye, optics) <= TAKEN_AT * room) {
             low = middle;
             memcpy(eye, at, sizeof at);
             if (i == 0) return tried;
@@ -134,9 +138,10 @@ static frame_view views_of(const shots_request *q)
 
 typedef struct stand { double error_px, frames_left; } stand;
 
-static double error_of(const bound_capture *c, const shot_aligned *a, const bound_view *view)
+static double error_of(const shot *h, const bound_capture *c, const shot_aligned *a, const bound_view *view)
 {
-    return a ? bound_centre_px(c, &a->view, view) : bound_turned_px(c, view->eye, &view->optics);
+    const double shown = a ? bound_centre_px(c, &a->view, view) : bound_turned_px(c, view->eye, &view->optics);
+    return shown + detail_px((double)h->away_m, view->eye, &h->box, &view->optics);
 }
 
 static stand stand_of(const shots_request *q, const shot *h, const shot_aligned *a, const frame_view *v)
@@ -148,10 +153,10 @@ static stand stand_of(const shots_request *q, const shot *h, const shot_aligned 
     bound_subtract(c.centre, q->view->eye, from_eye);
     const double distance = bound_dot(c.normal, from_eye);
     if (!(distance > NEARER_MOST * c.distance && distance < FARTHER_MOST * c.distance)) return s;
-    const double error = error_of(&c, a, &v->now);
+    const double error = error_of(h, &c, a, &v->now);
     if (!(error <= tolerance)) return s;
     s.error_px = error;
-    const double rise = error_of(&c, a, &v->next) - error;
+    const double rise = error_of(h, &c, a, &v->next) - error;
     // Where it falls the eye is before the place it was taken from, and the error rises as fast behind it.
     const double left = rise > 0 ? (tolerance - error) / rise : rise < 0 ? (error + tolerance) / -rise : FRAMES_MOST;
     s.frames_left = left < FRAMES_MOST ? left : FRAMES_MOST;
@@ -211,7 +216,7 @@ static void put_capture(const shots *s, const shots_request *q, uint32_t node, c
     cull_capture *to = &batch->captures[batch->capture_count++];
     *to = (cull_capture){.runs = s->lists->runs + n->first_run, .box = h->box, .corner = made->corner, .right = made->right, .up = made->up,
                          .run_count = n->run_count, .clip_plane_count = 4, .slot = node, .width_px = made->width_px, .height_px = made->height_px,
-                         .keep_depth = q->keep_depth, .eye = {(float)h->eye[0], (float)h->eye[1], (float)h->eye[2]}, .eye_is_said = 1};
+                         .keep_depth = q->keep_depth, .eye = {(float)h->eye[0], (float)h->eye[1], (float)h->eye[2]}, .eye_is_said = 1, .detail_m = h->away_m};
     planes_of(c, to->clip_planes);
 }
 
@@ -221,19 +226,40 @@ static uint32_t bytes_of(const shots_request *q, const quad *shape)
     return shape->width_px * shape->height_px * (q->keep_depth ? c->depth_pixel_bytes : c->pixel_bytes);
 }
 
+// How much wider a pixel is in the middle of the view than where the box stands now: 1 over the square of the cosine.
+static double stretch_of(const bound_view *v, const cull_box *box)
+{
+    double way[3];
+    for (int k = 0; k < 3; k++) way[k] = ((double)(&box->min.x)[k] + (double)(&box->max.x)[k]) / 2 - v->eye[k];
+    const double cosine = bound_dot(way, v->forward) / sqrt(bound_dot(way, way));
+    return cosine > 0 && 1 / (cosine * cosine) < STRETCH_MOST ? 1 / (cosine * cosine) : STRETCH_MOST;
+}
+
 // Where from and through which parallelogram; 0: it can't be taken.
 static int place(const shots *s, const shots_request *q, const frame_view *v, shot *made, quad *out)
 {
-    quad_request ask = {.box = made->box, .optics = v->now.optics, .magnification = 1, .place = QUAD_PLACE_MIDDLE, .most_texels = TEXELS_MOST};
+    quad_request ask = {.box = made->box, .optics = v->now.optics, .magnification = TEXEL_PX / stretch_of(&v->now, &made->box), .place = QUAD_PLACE_MIDDLE, .most_texels = TEXELS_MOST};
     double distance;
     if (s->aligned) {
         place_ahead(q->view, 0, made->eye);
         distance = bound_capture_of(made->eye, &made->box).distance;
-    } else distance = take_from(q, &v->now.optics, &made->box, made->eye).distance;
+    } else distance = take_from(q, &v->now.optics, made, made->eye).distance;
     memcpy(ask.eye, made->eye, sizeof ask.eye);
     ask.near_distance = q->view->optics.near_distance;
     ask.room = ROOM * distance;
-    return (s->aligned ? quad_aligned_of(&ask, &v->now, out) : quad_of(&ask, out)) == QUAD_OK;
+    quad_result made_it = s->aligned ? quad_aligned_of(&ask, &v->now, out) : quad_of(&ask, out);
+    if (made_it == QUAD_TOO_LARGE) { // with texels of a pixel, then
+        ask.magnification = 1;
+        made_it = s->aligned ? quad_aligned_of(&ask, &v->now, out) : quad_of(&ask, out);
+    }
+    return made_it == QUAD_OK;
+}
+
+static detail_choice detail_of(const shots_request *q, uint32_t polygon_count, const bound_optics *optics, const cull_box *box)
+{
+    const detail_choice all = {0, 0, polygon_count};
+    const detail_request ask = {q->view->costs, optics, q->view->eye, box, q->view->tolerance_px, polygon_count, 0};
+    return q->detail == SHOTS_FULL ? all : detail_choose(&ask);
 }
 
 static int take(shots *s, const shots_request *q, uint32_t i, const frame_view *v, cull_batch *batch)
@@ -244,17 +270,22 @@ static int take(shots *s, const shots_request *q, uint32_t i, const frame_view *
     const column c = column_of(&s->cells->ground, node, delta_of(s, q, node));
     shot made = {.box = box_of(s, node, &c), .pixels_per_tangent = (float)v->now.optics.pixels_per_tangent, .keep_depth = q->keep_depth, .frame = q->frame};
     shot_aligned aligned = {.view = v->now};
+    const detail_choice detail = detail_of(q, n->polygon_count, &v->now.optics, &made.box);
+    made.away_m = detail.away_m;
+    made.box = detail_box(&made.box, (double)detail.away_m);
     if (!place(s, q, v, &made, &aligned.taken)) return 0;
     const quad *shape = &aligned.taken;
     const stand at = stand_of(q, &made, s->aligned ? &aligned : NULL, v);
     if (!(at.error_px <= q->view->tolerance_px)) return 0;
     if (!store_take(&s->store, &(store_request){q->visit, node, bytes_of(q, shape), s->captures_most}, batch)) return 0;
-    made.ns = (float)(costs->capture_ns + n->polygon_count * costs->polygon_ns + (double)shape->width_px * shape->height_px * costs->capture_pixel_ns);
+    made.ns = (float)(costs->capture_ns + detail.polygons * costs->polygon_ns + (double)shape->width_px * shape->height_px * costs->capture_pixel_ns);
     s->all[node] = made;
     if (s->aligned) s->aligned[node] = aligned;
     s->states[i] = (shot_state){(float)at.error_px, (float)at.frames_left, 0};
     put_capture(s, q, node, &c, shape, batch);
     s->taken_count++;
+    s->polygons += detail.polygons;
+    s->spared += n->polygon_count - detail.polygons;
     return 1;
 }
 
@@ -271,7 +302,7 @@ static double take_due(shots *s, const shots_request *q, const frame_view *v, cu
         if (s->states[i].error_px < INFINITY || is_hidden(q, i)) continue;
         if (q->budget == SHOTS_STEADY && spent + (double)h->ns > q->spare_ns && is_right(q, node, h, &v->now.optics)) {
             const bound_capture c = bound_capture_of(h->eye, &h->box);
-            const double error = error_of(&c, aligned_of(s, node), &v->now);
+            const double error = error_of(h, &c, aligned_of(s, node), &v->now);
             if (error < STALE_MOST * q->view->tolerance_px) {
                 s->states[i].error_px = (float)error;
                 s->stale_count++;
@@ -365,7 +396,7 @@ int shots_show(shots *s, const shots_request *q, cull_batch *batch)
     for (uint32_t i = 0; i < q->cut->taken_count; i++)
         if (s->states[i].frames_left < 0 && !is_hidden(q, i)) check(s, q, i, &v);
     s->shown_count = s->taken_count = s->early_count = s->stale_count = 0;
-    s->error_px = 0;
+    s->error_px = s->polygons = s->spared = 0;
     const double spent = take_due(s, q, &v, batch);
     if (spent < 0) {
         clip_all(s, q, batch);

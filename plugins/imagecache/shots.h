@@ -8,6 +8,7 @@
 #define PORTCULLIS_IMAGECACHE_SHOTS_H
 
 #include "cut.h"
+#include "detail.h"
 #include "quad.h"
 #include "store.h"
 
@@ -17,6 +18,7 @@ typedef struct shot {
     cull_box box;             // of all that it shows
     float pixels_per_tangent; // that its texels were made for
     float ns;                 // that taking it takes, as foretold
+    float away_m;             // that its items' points may stand from their places (detail.h)
     uint32_t keep_depth, frame;
 } shot;
 
@@ -41,6 +43,7 @@ typedef struct shots_request {
     uint64_t bytes_most; // of all pictures
     double spare_ns; // for captures; INFINITY: whatever it takes
     enum { SHOTS_BOUNDED, SHOTS_STEADY } budget; // where that is not enough: more all the same; or older pictures
+    enum { SHOTS_COARSER, SHOTS_FULL } detail; // items with fewer polygons where that pays; with all
 } shots_request;
 
 // A query's memory of them.
@@ -55,6 +58,7 @@ typedef struct shots {
     double even_ns;     // a frame, that captures take as long as all goes on
     uint32_t shown_count, taken_count, early_count, stale_count; // this frame
     double error_px;                                             // the largest shown
+    double polygons, spared;                                     // of those taken: as foretold; fewer than there are
     size_t bytes, aligned_bytes;
 } shots;
 

@@ -140,7 +140,8 @@ static uint64_t bytes_most(const show_culler *c)
 static shots_request shots_of(const show *s, const cull_visit *visit)
 {
     const shots_request q = {.visit = visit, .view = &s->view, .cut = &s->cut, .keep_depth = s->culler->keep_depth, .frame = s->looks.frame,
-                             .bytes_most = bytes_most(s->culler), .spare_ns = spare_ns(s), .budget = s->culler->options.budget == SHOW_STEADY ? SHOTS_STEADY : SHOTS_BOUNDED};
+                             .bytes_most = bytes_most(s->culler), .spare_ns = spare_ns(s), .budget = s->culler->options.budget == SHOW_STEADY ? SHOTS_STEADY : SHOTS_BOUNDED,
+                             .detail = s->culler->options.detail == SHOW_FULL ? SHOTS_FULL : SHOTS_COARSER};
     return q;
 }
 
@@ -180,6 +181,8 @@ void show_pictures(show *s, const show_frame *f, cull_batch *batch)
     n->early += s->shots.early_count;
     n->stale += s->shots.stale_count;
     n->evicted += s->shots.store.evicted;
+    n->polygons += s->shots.polygons;
+    n->spared += s->shots.spared;
     if (s->shots.error_px > n->error_px) n->error_px = s->shots.error_px;
 }
 

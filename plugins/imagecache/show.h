@@ -16,6 +16,7 @@ typedef struct show_options {
     enum { SHOW_TREE, SHOW_CELLS } nodes;
     enum { SHOW_HIDDEN_TESTED, SHOW_HIDDEN_TOO } hidden; // nodes that geometry hides: tested where this culler may step, or shown
     enum { SHOW_BOUNDED, SHOW_STEADY } budget;           // where a frame's time is spent: geometry's error all the same, or older pictures
+    enum { SHOW_COARSER, SHOW_FULL } detail;             // of what pictures are taken of, where the host has it
     double tolerance_px;
     uint64_t bytes_most; // of pictures; the host may allow less
 } show_options;
@@ -36,6 +37,7 @@ void show_tell(const show_culler *s, const cells *c, cull_built *out);
 typedef struct show_counts { // of a query's life
     uint64_t frames, geometry_frames; // frames; those in which pictures didn't pay, or could not be taken
     uint64_t pictures, captures, early, stale, tests, hidden, evicted;
+    double polygons, spared; // of captures: drawn as foretold; left out by coarser levels
     double error_px; // the largest
 } show_counts;
 

@@ -9,11 +9,12 @@ enum { EMPTY_BYTES = 8 }; // a texel, with depth
 int store_open(const cull_host *host, uint32_t slot_count, store *out)
 {
     memset(out, 0, sizeof *out);
-    out->size = 2 * slot_count * sizeof *out->bytes;
+    out->size = 3 * (size_t)slot_count * sizeof *out->bytes;
     out->bytes = host->alloc(host, out->size, _Alignof(uint32_t));
     if (!out->bytes) return 0;
     memset(out->bytes, 0, out->size);
-    out->used = out->bytes + slot_count;
+    out->asked = out->bytes + slot_count;
+    out->used = out->asked + slot_count;
     out->slot_count = slot_count;
     return 1;
 }
@@ -29,7 +30,8 @@ void store_begin(store *s, const cull_visit *visit, uint32_t frame, uint64_t mos
     s->most = most;
     s->held = s->evicted = 0;
     for (uint32_t i = 0; i < s->slot_count; i++) {
-        if (!visit->slots[i]) s->bytes[i] = 0;
+        if (s->asked[i] && visit->slots[i]) s->bytes[i] = s->asked[i];
+        s->asked[i] = 0;
         s->held += s->bytes[i];
     }
 }
@@ -63,14 +65,15 @@ static void empty(store *s, const store_request *q, uint32_t slot, cull_batch *b
 
 int store_take(store *s, const store_request *q, cull_batch *batch)
 {
-    while (s->held - s->bytes[q->slot] + q->bytes > s->most) {
+    const uint32_t more = q->bytes > s->bytes[q->slot] ? q->bytes - s->bytes[q->slot] : 0;
+    while (s->held + more > s->most) {
         const uint32_t slot = oldest(s);
         if (slot == UINT32_MAX || batch->capture_count + 1 >= q->captures_most) return 0;
         empty(s, q, slot, batch);
     }
     if (batch->capture_count >= q->captures_most) return 0;
-    s->held += q->bytes;
-    s->held -= s->bytes[q->slot];
-    s->bytes[q->slot] = q->bytes;
+    s->held += more;
+    s->bytes[q->slot] += more;
+    s->asked[q->slot] = q->bytes;
     return 1;
 }

@@ -1,17 +1,19 @@
 // What pictures take together, and which one goes when there is no room: the one that was shown longest ago, never one of this frame.
 // SPDX-License-Identifier: MIT
 //
-// Invariant: the pictures of a query never take more than `most` bytes, as the host counts them.
+// Invariant: the pictures of a query never take more than `most` bytes, as the host counts them. A slot that was emptied counts on: a change empties it,
+// or a filter drops the capture, and the host keeps the memory until the slot is taken anew.
 #ifndef PORTCULLIS_IMAGECACHE_STORE_H
 #define PORTCULLIS_IMAGECACHE_STORE_H
 
 #include <portcullis/culler.h>
 
 typedef struct store {
-    uint32_t *bytes; // by slot: of the last capture into it
+    uint32_t *bytes; // by slot: the most that the host may hold
+    uint32_t *asked; // by slot: of a capture given in the frame before, which may have been dropped; 0: none
     uint32_t *used;  // by slot: the frame that it was shown in last
     uint32_t slot_count, frame;
-    uint64_t held, most; // held: of slots that are full, in this frame
+    uint64_t held, most; // held: of all slots
     uint32_t evicted;    // this frame
     size_t size;
 } store;

@@ -352,6 +352,7 @@ void chc_hear(occlusion_walk *w)
     const cull_visit *visit = w->visit;
     for (uint32_t i = 0; i < visit->answer_count; i++) {
         const cull_answer *a = &visit->answers[i];
+        if (walk_is_of_picture(a->tag)) continue;
         if (a->tag & CHC_VISIBLE) count_visible(w, a);
         else if (a->tag & CHC_PAIR) chc_hear_pair(w, a);
         else if (a->age == 0 && visit->step && a->tag < c->test_count) {
@@ -360,7 +361,7 @@ void chc_hear(occlusion_walk *w)
         }
     }
     for (uint32_t i = 0; i < visit->answer_count; i++)
-        if (visit->answers[i].tag & CHC_VISIBLE) hear_visible(w, &visit->answers[i]);
+        if ((visit->answers[i].tag & CHC_VISIBLE) && !walk_is_of_picture(visit->answers[i].tag)) hear_visible(w, &visit->answers[i]);
     settle_heard(w);
     if (c->waited) chc_give_up(w);
     c->waited = 0;

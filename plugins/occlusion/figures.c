@@ -9,6 +9,7 @@ void figures_begin(const occlusion_tree *tree, occlusion_figures *out)
         "frames_at_rest",
         "tests_joint", "tests_joint_hidden", "tests_early", "turns_a_frame",
         "rectangles_tested", "items_rastered", "polygons_rastered",
+        "pictures_tested", "pictures_hidden", "captures_saved",
     };
     *out = (occlusion_figures){.lent = {out->list, FIGURE_COUNT, 0}};
     for (int i = 0; i < FIGURE_COUNT; i++) out->list[i].name = names[i];
@@ -33,6 +34,9 @@ void figures_add(occlusion_figures *f, const occlusion_counters *c)
     list[FIGURE_RECTANGLES].value += (double)c->hiz.rectangles;
     list[FIGURE_HIZ_ITEMS].value += (double)c->hiz.items;
     list[FIGURE_HIZ_POLYGONS].value += (double)c->hiz.polygons;
+    list[FIGURE_PICTURES_TESTED].value += (double)(c->drops.tested + c->hiz.drops.tested);
+    list[FIGURE_PICTURES_HIDDEN].value += (double)(c->drops.pictures + c->hiz.drops.pictures);
+    list[FIGURE_CAPTURES_SAVED].value += (double)(c->drops.captures + c->hiz.drops.captures);
     f->turns += (double)c->turns;
     f->late_answers += (double)c->late_answers;
     f->age_sum += (double)c->age_sum;

@@ -4,6 +4,7 @@
 #ifndef OCCLUSION_HISTORY_H
 #define OCCLUSION_HISTORY_H
 
+#include "drop.h"
 #include "heap.h"
 #include "hiz_counters.h"
 #include "tree.h"
@@ -20,6 +21,7 @@ typedef struct occlusion_counters {
     uint64_t joint, joint_hits; // of the tests, several entries under one; answered "hidden"
     uint64_t early;             // of the tests, for the next frame, asked as there was no other work while answers were out
     uint64_t turns;             // from drawing to testing, and back
+    drop_counters drops;        // of hiz: in hiz.drops
     hiz_counters hiz;
 } occlusion_counters;
 
@@ -35,6 +37,8 @@ typedef struct ledger_page {
 
 // Flags of an item: seen, how often in a row, and found hidden in the frame that had drawn it already.
 enum { ITEM_SEEN = 1, ITEM_LOST = 2, ITEM_CALM_SHIFT = 2 };
+
+enum { HISTORY_SLOT_WORDS = 8 };
 
 struct occlusion_chc;
 typedef struct occlusion_history {
@@ -60,6 +64,8 @@ typedef struct occlusion_history {
     uint32_t gave_up; // serial of the last frame in which the sample said no
     uint32_t sampled_items, sample_every; // of a frame at rest: items looked at; of which one in so many is tested
     uint32_t serial, last_frame, first_run, mask_used, says_places, phase, mover_capacity, test_most, is_testing;
+    uint32_t is_over, picture_tests; // the method is done with this frame, and pictures are tested: so many
+    uint64_t hidden_slots[HISTORY_SLOT_WORDS]; // of pictures found hidden in the last frame; several share a bit: a guess
 } occlusion_history;
 
 typedef struct history_request {

@@ -260,26 +260,45 @@ static void seen_put(hiz_frame *f, const uint32_t *numbers, uint64_t *said, cull
     }
 }
 
-static uint32_t movers_seen(hiz_frame *f, const cull_mover *movers, uint32_t count)
+// Which of up to 16 boxes may leave a pixel behind what the bands hold.
+static uint32_t boxes_seen(hiz_frame *f, const cull_box *boxes[HIZ_WIDTH], uint32_t count)
 {
     float block[HIZ_BLOCK_FLOATS] = {0};
     uint32_t seen = 0;
     for (uint32_t i = 0; i < count; i++) {
-        const cull_box *box = &movers[i].box;
+        const cull_box *box = boxes[i];
         const float values[6] = {box->min.x, box->min.y, box->min.z, box->max.x, box->max.y, box->max.z};
         for (int k = 0; k < 6; k++) block[k * HIZ_WIDTH + (int)i] = values[k];
     }
     for (uint32_t i = 0; i < f->band_count; i++) seen |= f->h->options.kernel->boxes_seen(&f->views[i], &f->buffers[i], block, (1u << count) - 1);
-    return seen;
+    return f->band_count ? seen : UINT32_MAX;
 }
 
 static void movers_put(hiz_frame *f, const cull_visit *visit, cull_batch *batch)
 {
-    for (uint32_t first = 0; first < visit->mover_count; first += HIZ_WIDTH) {
-        const uint32_t left = visit->mover_count - first, count = left < HIZ_WIDTH ? left : HIZ_WIDTH;
-        const uint32_t seen = f->band_count ? movers_seen(f, visit->movers + first, count) : UINT32_MAX;
+    const cull_box *boxes[HIZ_WIDTH];
+    for (uint32_t first = 0, count; first < visit->mover_count; first += count) {
+        for (count = 0; count < HIZ_WIDTH && first + count < visit->mover_count; count++) boxes[count] = &visit->movers[first + count].box;
+        const uint32_t seen = boxes_seen(f, boxes, count);
         for (uint32_t i = 0; i < count; i++)
             if (seen >> i & 1) batch->runs[batch->run_count++] = (cull_run){visit->movers[first + i].id, 1};
+    }
+}
+
+// Of a select that stands before: neither shown nor taken where hidden.
+static void pictures_keep(hiz_frame *f, const cull_visit *visit, cull_batch *batch, drop_counters *n)
+{
+    const cull_box *boxes[HIZ_WIDTH];
+    for (uint32_t first = 0, count; first < visit->picture_count; first += count) {
+        for (count = 0; count < HIZ_WIDTH && first + count < visit->picture_count; count++) boxes[count] = &visit->pictures[first + count].box;
+        const uint32_t seen = boxes_seen(f, boxes, count);
+        n->tested += count;
+        for (uint32_t i = 0; i < count; i++)
+            if (!(seen >> i & 1)) drop_picture(visit, batch, first + i, n);
+    }
+    for (uint32_t i = 0; i < visit->clipped_count; i++) {
+        boxes[0] = &visit->clipped[i].box;
+        if (!(boxes_seen(f, boxes, 1) & 1)) batch->keep_clipped[i] = 0;
     }
 }
 
@@ -312,13 +331,8 @@ cull_progress hiz_step(const hiz *h, const uint32_t *numbers, const cull_visit *
     batch->limits_hit += visit->view->width_px > HIZ_WIDTH_MOST || visit->view->height_px > HIZ_HEIGHT_MOST;
     seen_put(&f, numbers, room.active[0], batch);
     movers_put(&f, visit, batch);
+    pictures_keep(&f, visit, batch, &counters->drops);
     return CULL_DONE;
-}
-
-static uint32_t box_seen(hiz_frame *f, const cull_box *box)
-{
-    const cull_mover one = {.box = *box};
-    return movers_seen(f, &one, 1);
 }
 
 hiz_sight hiz_look(const hiz *h, const cull_visit *visit, uint32_t item)
@@ -333,5 +347,6 @@ hiz_sight hiz_look(const hiz *h, const cull_visit *visit, uint32_t item)
     for (uint32_t i = 0; i < f.band_count; i++) hiz_buffer_clear(&f.buffers[i]);
     const float *b = t->blocks[0] + (size_t)(t->slots[item] / HIZ_WIDTH) * HIZ_BLOCK_FLOATS + t->slots[item] % HIZ_WIDTH;
     const cull_box box = {{b[0], b[16], b[32]}, {b[48], b[64], b[80]}};
-    return box_seen(&f, &box) ? HIZ_HIDDEN : HIZ_NO_PIXEL;
+    const cull_box *one[HIZ_WIDTH] = {&box};
+    return boxes_seen(&f, one, 1) & 1 ? HIZ_HIDDEN : HIZ_NO_PIXEL;
 }

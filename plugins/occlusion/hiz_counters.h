@@ -3,7 +3,7 @@
 #ifndef OCCLUSION_HIZ_COUNTERS_H
 #define OCCLUSION_HIZ_COUNTERS_H
 
-#include <stdint.h>
+#include "drop.h"
 
 typedef struct hiz_rest { // see hiz_rest.h
     uint32_t serial, on_since, due, level; // of frames; the pause's end, and that of the next: 2^level frames
@@ -14,6 +14,7 @@ typedef struct hiz_rest { // see hiz_rest.h
 
 typedef struct hiz_counters {
     uint64_t rectangles, items, polygons; // rectangles tested; drawn into the pyramid
+    drop_counters drops;
     hiz_rest rest;
 } hiz_counters;
 

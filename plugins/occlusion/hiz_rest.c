@@ -93,7 +93,7 @@ int hiz_rest_frame(occlusion_walk *w, hiz_rest *r)
     return 1;
 }
 
-void hiz_rest_judge(occlusion_walk *w, const hiz *h, hiz_rest *r)
+void hiz_rest_judge(occlusion_walk *w, const hiz *h, uint64_t saved, hiz_rest *r)
 {
     const uint32_t age = r->serial - r->on_since;
     if (age >= FIRST_FRAMES && r->serial % LOOK_EVERY) return;
@@ -114,7 +114,7 @@ void hiz_rest_judge(occlusion_walk *w, const hiz *h, hiz_rest *r)
         r->gained /= 2;
     }
     r->spent += cost;
-    r->gained += all > shown ? (all - shown) * HALVES : 0;
+    r->gained += (all > shown ? (all - shown) * HALVES : 0) + saved * HALVES;
     if (r->gained < r->spent && (r->has_paused || age + 1 >= FIRST_FRAMES)) pause_begin(r);
     else if (age > 1u << LEVEL_MOST) r->has_paused = 0;
 }

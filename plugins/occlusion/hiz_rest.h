@@ -14,7 +14,7 @@
 
 // Before the frame. 1: it rests: all is said to the host, and the frame is complete.
 int hiz_rest_frame(occlusion_walk *w, hiz_rest *r);
-// After a frame that did not: what it drew is in the batch from h->first_run on.
-void hiz_rest_judge(occlusion_walk *w, const hiz *h, hiz_rest *r);
+// After a frame that did not: what it drew is in the batch from h->first_run on. saved: polygons, by pictures dropped in it.
+void hiz_rest_judge(occlusion_walk *w, const hiz *h, uint64_t saved, hiz_rest *r);
 
 #endif

@@ -11,6 +11,7 @@
 #include "figures.h"
 #include "hiz_rest.h"
 #include "method.h"
+#include "pictures.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -100,6 +101,12 @@ static uint32_t entries_of(const cull_culler *c)
     return c->tree.node_count + c->tree.item_count + c->mover_capacity;
 }
 
+// Of a select before, in a step of their own: hiz has them in its one, and last has but one.
+static int tests_pictures(const cull_culler *c)
+{
+    return c->method != &method_hiz && c->method != &method_last;
+}
+
 static void tell(cull_culler *c, cull_built *out)
 {
     const uint32_t entries = entries_of(c);
@@ -109,6 +116,10 @@ static void tell(cull_culler *c, cull_built *out)
     out->max_runs = c->tree.item_count;
     out->max_steps = c->method->steps_most(entries);
     out->max_tests = c->method->tests_most(entries);
+    if (tests_pictures(c)) {
+        out->max_steps += out->max_steps < CULL_MAX_STEPS;
+        out->max_tests += pictures_tests(c->tree.item_count);
+    }
     out->takes_movers = 1; // a mover may be worth many tests, and its box is as good to test as an item's
 }
 
@@ -194,9 +205,18 @@ static cull_progress hiz_frame_step(cull_query *q, occlusion_walk *w)
     const hiz *h = &q->culler->hiz;
     hiz_counters *counters = &q->history.counters.hiz;
     if (hiz_rest_frame(w, &counters->rest)) return CULL_DONE;
+    const uint64_t saved = counters->drops.polygons;
     const cull_progress progress = hiz_step(h, q->history.says_places ? q->culler->tree.places : NULL, w->visit, w->batch, counters);
-    hiz_rest_judge(w, h, &counters->rest);
+    hiz_rest_judge(w, h, counters->drops.polygons - saved, &counters->rest);
     return progress;
+}
+
+// Answers to what the method asked for the next frame come now, as they would then.
+static cull_progress pictures_step(occlusion_walk *w)
+{
+    if (w->h->chc) chc_hear(w);
+    pictures_judge(w);
+    return CULL_DONE;
 }
 
 static cull_progress occlusion_step(cull_query *q, const cull_visit *visit, cull_batch *batch)
@@ -207,9 +227,11 @@ static cull_progress occlusion_step(cull_query *q, const cull_visit *visit, cull
     if (visit->step == 0) walk_begin(&w);
     q->history.first_run = batch->run_count;
     walk_hear(&w);
+    if (q->history.is_over) return pictures_step(&w);
     const cull_progress progress = c->method->step(&w);
+    const int asks = progress == CULL_DONE && tests_pictures(c) && pictures_ask(&w);
     walk_count_turns(&w);
-    return progress;
+    return asks ? CULL_WAIT : progress;
 }
 
 static cull_progress occlusion_select(cull_query *q, const cull_visit *visit, cull_batch *batch)

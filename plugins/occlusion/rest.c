@@ -20,7 +20,7 @@ static uint32_t least_polygons(const occlusion_walk *w)
 static uint64_t polygons_at_most(const occlusion_walk *w, uint64_t enough)
 {
     const cull_visit *visit = w->visit;
-    uint64_t sum = (uint64_t)visit->mover_count * MOVER_POLYGONS;
+    uint64_t sum = (uint64_t)visit->mover_count * MOVER_POLYGONS + (uint64_t)visit->picture_count * DROP_PICTURE_POLYGONS;
     if (!w->takes_candidates) return sum + (w->tree->node_count ? w->tree->nodes[0].polygons : 0);
     for (uint32_t i = 0; i < visit->candidate_count && sum < enough; i++)
         for (uint32_t k = 0; k < visit->candidates[i].count && sum < enough; k++) {
@@ -232,7 +232,7 @@ int rest_frame(occlusion_walk *w)
     h->counters.rests++;
     h->rested = h->serial;
     begin_sample(h);
-    if (w->takes_candidates && !w->visit->picture_count) draw_candidates(w);
+    if (w->takes_candidates) draw_candidates(w);
     else if (w->visit->volume_count == 1 && !h->mask_used) draw_tree_through_one(w);
     else draw_tree(w);
     if (w->tree->node_count && is_asking(w) && !walk_is_near(w, walk_key(w, &w->tree->nodes[0].box))) walk_ask_final(w, w->tree->item_count);

@@ -57,10 +57,11 @@ void walk_begin(occlusion_walk *w)
         h->serial = 1;
     }
     h->counters.frames++;
-    h->heap_count = h->pending_count = h->tested_count = 0;
+    h->heap_count = h->pending_count = h->tested_count = h->is_over = 0;
     h->mask_used = w->takes_candidates || visit->picture_count || visit->clipped_count;
     if (w->takes_candidates) mask_all_but_candidates(w);
     else if (h->mask_used) memset(h->masked, 0, ((size_t)w->tree->item_count / 64 + 1) * sizeof(uint64_t));
+    if (w->takes_candidates) return; // the culler before has left out what it shows otherwise
     for (uint32_t i = 0; i < visit->picture_count; i++) mask_runs(w, visit->pictures[i].runs, visit->pictures[i].run_count);
     for (uint32_t i = 0; i < visit->clipped_count; i++) mask_runs(w, visit->clipped[i].runs, visit->clipped[i].run_count);
 }
@@ -348,7 +349,7 @@ static void hear_final(occlusion_walk *w, const cull_answer *a)
         return;
     }
     history_lose(h, place);
-    if (h->drawn[place] == h->serial) h->items[place] = ITEM_LOST;
+    if (h->drawn[place] == h->serial && !h->is_over) h->items[place] = ITEM_LOST;
 }
 
 // Of a hidden entry: what would have been drawn without the test. Of a large node on the border of the volumes nobody knows
@@ -403,8 +404,9 @@ void walk_hear(occlusion_walk *w)
         const cull_answer *a = &visit->answers[i];
         h->counters.late_answers += a->age != 0;
         h->counters.age_sum += a->age;
+        if (walk_is_of_picture(a->tag)) continue;
         if (a->tag & WALK_FINAL) {
-            if (a->age) hear_final(w, a);
+            if (a->age || h->is_over) hear_final(w, a);
         } else if (a->age == 0 && visit->step && a->tag < h->tested_count) {
             h->pixels[a->tag] = a->pixels < UINT32_MAX ? a->pixels : 1;
         }
@@ -444,7 +446,7 @@ void walk_settle(occlusion_walk *w, const walk_finding *f)
 void walk_hear_drawn(occlusion_walk *w, uint32_t place, uint32_t pixels)
 {
     occlusion_history *h = w->h;
-    const int is_drawn = h->drawn[place] == h->serial;
+    const int is_drawn = h->drawn[place] == h->serial && !h->is_over;
     enter(w, tree_entry_of_item(w->tree, place), LEDGER_TEST, pixels ? 0 : w->tree->polygons[place]);
     if (pixels) return;
     history_lose(h, place);

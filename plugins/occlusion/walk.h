@@ -23,7 +23,12 @@ typedef enum walk_place { WALK_OUT, WALK_CUT, WALK_IN } walk_place; // of a box 
 
 // Tags of tests: FINAL and an item's place, asked when the frame was complete; else a place in h->pending.
 #define WALK_FINAL 0x80000000u
+#define WALK_PICTURE 0xC0000000u // and a picture's number, behind them a clipped one's; places and movers' ids are below 2^30
 #define WALK_NO_NUMBER (-FLT_MAX) // a key
+static inline int walk_is_of_picture(uint32_t tag)
+{
+    return (tag & WALK_PICTURE) == WALK_PICTURE;
+}
 
 // Begins a frame (step 0): serial, marks of candidates and pictures. Call once before all else.
 void walk_begin(occlusion_walk *w);

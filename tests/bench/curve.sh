@@ -17,13 +17,13 @@ trap 'rm -rf "$work"' EXIT
 [ "$?" -ne 3 ] || skip "no OpenGL"
 sh "$script" "$portcullis" "$work/out" "$rooms" path:walk 'far & near:testpicture[pixels=@,distance=3]' 'a "near" one:testpicture[pixels=@,distance=0.5]'
 is 'exit code' "$?" 0
-is 'points: two series of two values and two baselines' "$(grep -c '"series"' "$work/out.json")" 8
-is 'values' "$(sed -n 's/.*"value": \([^,]*\),.*/\1/p' "$work/out.json" | tr '\n' ' ')" 'null null 16 256 null null 16 256 '
-is 'the first of a series is what times are divided by' "$(grep '"chain": "none"' "$work/out.json" | grep -c '"total_ms_by_first": 1}')" 2
-is 'baselines have no error' "$(grep '"value": null' "$work/out.json" | grep -c '"flip": 0,.*"crack_pixels": 0,')" 4
-is 'points with an error are plotted' "$(grep -c '<circle' "$work/out.svg")" "$(grep -v '"value": null' "$work/out.json" | grep '"series"' | grep -vc '"flip": 0,')"
-true_that 'some are' "$(grep -c '<circle' "$work/out.svg") >= 2"
-is 'labels are escaped' "$(grep -c '>far &amp; near<' "$work/out.svg") $(grep -c 'a \\"near\\" one' "$work/out.json")" '1 4'
+is 'points: two baselines, and two series of two values' "$(grep -c '"series"' "$work/out.json")" 6
+is 'values' "$(sed -n 's/.*"value": \([^,]*\),.*/\1/p' "$work/out.json" | tr '\n' ' ')" 'null null 16 256 16 256 '
+is 'the first is what times are divided by' "$(grep '"chain": "none"' "$work/out.json" | grep -c '"total_ms_by_first": 1}')" 1
+is 'baselines have no error' "$(grep '"value": null' "$work/out.json" | grep -c '"flip": 0,.*"crack_pixels": 0,.*"popping": 0,')" 2
+is 'points with an error are plotted, beside one for each series that names it' "$(($(grep -c 'class="point"' "$work/out.svg") - 2))" "$(grep -v '"value": null' "$work/out.json" | grep '"series"' | grep -vc '"flip": 0,')"
+true_that 'some are' "$(grep -c 'class="point"' "$work/out.svg") - 2 >= 2"
+is 'labels are escaped' "$(grep -c '>far &amp; near<' "$work/out.svg") $(grep -c 'a \\"near\\" one' "$work/out.json")" '1 2'
 is 'the plot is closed' "$(tail -n 1 "$work/out.svg")" '</svg>'
 sh "$script" "$portcullis" "$work/bad" "$rooms" path:walk 'no place:testpicture' 2>/dev/null
 is 'a series without @ is refused' "$?" 2

@@ -125,6 +125,21 @@ if(TARGET plugin_occlusion)
     "if (pixels) tile_cover_part(b, r, column, row, pixels);" "if (pixels) tile_cover_part(b, r, column, row, pixels | pixels << 8 | pixels << 16);")
 endif()
 
+if(TARGET plugin_imagecache)
+  portcullis_mutant(imagecache loses-cells-alone-in-a-row rings.c
+    "if (least > most) return 0;" "if (least >= most) return 0;")
+  portcullis_mutant(imagecache believes-the-last-frame looks.c
+    "l->hidden[a.tag] = l->frame;" "l->hidden[a.tag] = l->frame + 1;")
+  portcullis_mutant(imagecache moves-seams-inward cut.c
+    "return quad_seam_delta(&seam);" "return -quad_seam_delta(&seam);")
+  portcullis_mutant(imagecache bounds-a-64th-of-the-way bound.c
+    "bound_subtract(eye, capture->eye, moved);" "bound_subtract(eye, capture->eye, moved); for (int k = 0; k < 3; k++) moved[k] /= 64;")
+  portcullis_mutant(imagecache shows-far-before-near nodes.c
+    "quadrant = near ^ k" "quadrant = near ^ 3u ^ k")
+  portcullis_mutant(imagecache takes-items-at-home-only lists.c
+    "const cells_run run = c->runs[r];" "const cells_run run = c->runs[r]; if (run.home != cell) continue;")
+endif()
+
 add_test(NAME bench_reports_mutants COMMAND sh ${CMAKE_CURRENT_SOURCE_DIR}/mutants.sh $<TARGET_FILE:portcullis> ${PROJECT_BINARY_DIR}/mutants
   ${PROJECT_SOURCE_DIR}/scenes)
 set_tests_properties(bench_reports_mutants PROPERTIES TIMEOUT ${PORTCULLIS_TEST_TIMEOUT} RESOURCE_LOCK gl SKIP_RETURN_CODE 77 LABELS "not_sanitized;not_by_clang")

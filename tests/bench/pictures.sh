@@ -33,12 +33,16 @@ is 'compared in every view' "$(same "$json" pictures_measured)" 60
 for i in 1 2; do
   is "row $i draws everything: no difference" "$(row flip $i) $(row flip_p99 $i) $(row crack_pixels $i)" '0 0 0'
   is "row $i: PSNR stands at its most" "$(row psnr $i)" 100
+  is "row $i: nothing pops" "$(row popping $i) $(row popping_p99 $i)" '0 0'
   is "row $i: SSIM" "$(row ssim $i)" 1
   is "row $i: no pictures, no refreshes" "$(row picture_bytes $i) $(row refreshes $i)" '0 0'
 done
 true_that 'movers are seen' "$(row mover_pixels 1) > 1000"
 is 'before and behind the right things' "$(row mover_pixels_wrong 1) $(row mover_pixels_wrong 2)" '0 0'
 true_that 'behind a picture with few depths seldom wrongly' "$(row mover_pixels_wrong 3) < 0.01 * $(row mover_pixels 3)"
+is 'every view but the first follows another' "$(same "$json" popping_views)" 59
+true_that 'a coarse picture pops when it is taken anew' "$(row popping 4) > $(row popping 3) && $(row popping_max 4) >= $(row popping_p99 4) && $(row popping_p99 4) >= $(row popping 4)"
+true_that 'the 99th percentile stands beside the median' "$(row total_ms_p99_to_p50 1) >= 1"
 true_that 'a coarse picture shows' "$(row flip 4) > 0.0005 && $(row flip 4) < 0.5"
 true_that 'more than a fine one' "$(row flip 4) > $(row flip 3) && $(row psnr 4) < $(row psnr 3) && $(row ssim 4) < $(row ssim 3)"
 true_that 'the worst views are worse than the mean' "$(row flip_p99 4) >= $(row flip 4) && $(row flip_max 4) >= $(row flip_p99 4)"
@@ -58,7 +62,7 @@ done
 is 'none where nothing differs' "$(ls "$work/images" | grep -c 'frustum-flip')" 0
 cp "$json" "$work/first.json"
 run again --views path:walk --culler "$fine" --culler "$coarse" --culler frustum
-for name in psnr ssim flip flip_p99 crack_pixels picture_bytes refreshes; do
+for name in psnr ssim flip flip_p99 popping popping_p99 crack_pixels picture_bytes refreshes; do
   is "the same $name again, unasked, without the others" "$(counter "$json" $name | sed -n 1,2p | tr "\n" " ")" "$(counter "$work/first.json" $name | sed -n 3,4p | tr "\n" " ")"
 done
 is 'who shows no pictures is not compared unasked' "$(row flip 3)" null
@@ -78,6 +82,12 @@ run long --views auto:walk:200 --culler frustum --pictures --size 64x36
 is 'a long walk warms up' "$(sed -n 's/.*"warmup_views": \([0-9]*\).*/\1/p' "$json")" 60
 is 'in views compared' "$(row pictures_measured 1)" 140
 is 'not in views' "$(row views 1)" 200
+run told --views path:walk --culler "$fine" --frame-ms 12.5 --no-truth
+is "a frame's time stands in the context" "$(sed -n 's/.*"frame_ms": \([0-9.]*\).*/\1/p' "$json")" 12.5
+for wrong in -1 1e9 ten 5x ''; do
+  "$portcullis" bench "$rooms" --views path:walk --culler none --frame-ms="$wrong" >"$work/table" 2>&1
+  is "--frame-ms='$wrong' is refused" "$? $(grep -c 'takes 0 to 100000 milliseconds' "$work/table")" '2 1'
+done
 run tiny --views path:walk --culler "$coarse" --pictures --size 10x10
 is 'a picture smaller than a window has no SSIM' "$(row ssim 1)" null
 "$portcullis" bench "$rooms" --views path:walk --culler none --json - --csv - >/dev/null 2>"$work/table"

@@ -1,6 +1,6 @@
 // FLIP: the published values, the oracle of plain convolutions, and what must hold for any two pictures.
 // SPDX-License-Identifier: MIT
-#include "bench/flip.h"
+#include "bench/flip_parts.h"
 #include "flip_oracle.h"
 #include "picture_pairs.h"
 
@@ -148,6 +148,58 @@ static void a_reference_that_is_kept_changes_no_bit(void **state)
     flip_close(f);
 }
 
+static double compare_with(const flip_kernel *kernel, float *out)
+{
+    flip *f = flip_open(&(flip_request){WIDE, HIGH, FLIP_PIXELS_PER_DEGREE}, allocator_heap());
+    assert_non_null(f);
+    f->kernel = kernel;
+    const double mean = flip_compare(f, &(flip_pair){one, two}, out);
+    flip_close(f);
+    return mean;
+}
+
+static void every_instruction_set_gives_the_same_bits(void **state)
+{
+    (void)state;
+    const flip_kernel *others[2] = {NULL, NULL};
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx2")) others[0] = &flip_kernel_avx2;
+    if (__builtin_cpu_supports("avx512f")) others[1] = &flip_kernel_avx512;
+#endif
+    for (uint32_t seed = 1; seed <= 3; ++seed) {
+        fill_noise(one, &SIZE, seed);
+        fill_waves(two, &SIZE, seed * 0.4);
+        const double plain = compare_with(&flip_kernel_plain, map);
+        assert_true(plain > 0);
+        for (int i = 0; i < 2; ++i) {
+            if (!others[i]) continue;
+            assert_true(compare_with(others[i], other_map) == plain);
+            assert_memory_equal(other_map, map, sizeof map);
+        }
+    }
+}
+
+static void what_is_kept_stays_when_others_are_compared_between(void **state)
+{
+    (void)state;
+    static float kept_map[WIDE * HIGH];
+    static uint8_t three[WIDE * HIGH * 4];
+    flip *f = flip_open(&(flip_request){WIDE, HIGH, FLIP_PIXELS_PER_DEGREE}, allocator_heap());
+    assert_non_null(f);
+    fill_waves(one, &SIZE, 0);
+    fill_noise(two, &SIZE, 2);
+    fill_waves(three, &SIZE, 2);
+    flip_keep_reference(f, 1);
+    const double first = flip_compare(f, &(flip_pair){one, three}, NULL);
+    flip_keep_reference(f, 0);
+    (void)flip_compare(f, &(flip_pair){two, three}, NULL);
+    flip_keep_reference(f, 1);
+    assert_true(flip_compare(f, &(flip_pair){one, three}, kept_map) == first);
+    assert_true(compare(one, three, map) == first);
+    assert_memory_equal(kept_map, map, sizeof map);
+    flip_close(f);
+}
+
 static void mirror(uint8_t *rgba)
 {
     for (int y = 0; y < HIGH; ++y)
@@ -241,6 +293,8 @@ int main(void)
         cmocka_unit_test(one_pixel_is_seen_as_far_as_the_filters_reach_and_no_farther),
         cmocka_unit_test(neither_of_two_pictures_is_the_reference),
         cmocka_unit_test(a_reference_that_is_kept_changes_no_bit),
+        cmocka_unit_test(what_is_kept_stays_when_others_are_compared_between),
+        cmocka_unit_test(every_instruction_set_gives_the_same_bits),
         cmocka_unit_test(mirrored_pictures_have_a_mirrored_map),
         cmocka_unit_test(the_most_is_one_and_more_of_an_error_is_more),
         cmocka_unit_test(noise_fades_when_pixels_are_seen_from_afar),

@@ -114,6 +114,8 @@ static void all_that_is_drawn_by_everybody_differs_in_nothing(void **state)
     assert_true(row.flip == 0 && row.flip_p99 == 0 && row.ssim == 1 && row.psnr == PSNR_MOST_DB);
     assert_int_equal(row.crack_pixels, 0);
     assert_int_equal(row.picture_faults, 0);
+    assert_true(row.popping == 0 && row.popping_p99 == 0);
+    assert_int_equal(row.popping_views, f->path.count - 1); // the first follows none
 }
 
 static void walls_judged_by_their_fronts_are_no_cracks_from_behind(void **state)
@@ -144,6 +146,25 @@ static void a_strategy_that_is_not_wanted_is_not_looked_at(void **state)
     assert_int_equal(row.pictures_measured, 0);
 }
 
+static void cullers_are_told_what_a_frame_may_take(void **state)
+{
+    fixture *f = with_gl(state);
+    const cull_costs before = f->services.costs;
+    bench_request bench = f->bench;
+    strategy s;
+    bench.costs = BENCH_COSTS_FIXED;
+    for (int asked = 0; asked < 2; ++asked) {
+        bench.frame_ms = asked ? 12.5 : 0;
+        assert_int_equal(strategy_open(&bench, &f->chains, NULL, &f->report, &s), RESULT_OK);
+        s.has_pictures = 1;
+        assert_int_equal(strategy_attach(&s, f->g, &f->report), RESULT_OK);
+        assert_true(f->services.costs.frame_ns == bench.frame_ms * 1e6);
+        assert_true(f->services.costs.polygon_ns == before.polygon_ns);
+        strategy_close(&s);
+    }
+    host_costs_set(&f->services, &before);
+}
+
 static uint32_t warmup(const char *name, uint32_t count)
 {
     camera_path path = {.count = count};
@@ -157,6 +178,8 @@ static void long_walks_warm_up_and_nothing_else(void **state)
     assert_int_equal(warmup("auto:walk:1000", 1000), 60);
     assert_int_equal(warmup("auto:walk:200", 200), 60);
     assert_int_equal(warmup("auto:walk:199", 199), 0);
+    assert_int_equal(warmup("auto:drive:200", 200), 60);
+    assert_int_equal(warmup("auto:drive:199", 199), 0);
     assert_int_equal(warmup("auto:1000", 1000), 0);
     assert_int_equal(warmup("auto:turn:1000", 1000), 0);
     assert_int_equal(warmup("walk", 1000), 0);
@@ -169,6 +192,7 @@ int main(void)
         cmocka_unit_test(all_that_is_drawn_by_everybody_differs_in_nothing),
         cmocka_unit_test(walls_judged_by_their_fronts_are_no_cracks_from_behind),
         cmocka_unit_test(a_strategy_that_is_not_wanted_is_not_looked_at),
+        cmocka_unit_test(cullers_are_told_what_a_frame_may_take),
         cmocka_unit_test(long_walks_warm_up_and_nothing_else),
     };
     return cmocka_run_group_tests(tests, fixture_setup, fixture_teardown);

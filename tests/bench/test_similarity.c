@@ -1,6 +1,6 @@
 // PSNR and SSIM: against sums without tiles, rows or columns, and against what formulas say.
 // SPDX-License-Identifier: MIT
-#include "bench/similarity.h"
+#include "bench/similarity_parts.h"
 #include "picture_pairs.h"
 
 enum { WIDE = 91, HIGH = 78 };
@@ -63,6 +63,31 @@ static void ssim_is_that_of_plain_windows(void **state)
     memcpy(two, one, sizeof two);
     memset(two + 4 * (65 * WIDE + 70), 0, 40); // in the last tiles only
     assert_near(ssim(one, two), oracle(one, two), 1e-5);
+}
+
+static double ssim_with(const similarity_kernel *kernel)
+{
+    similarity *s = similarity_open(&(similarity_size){WIDE, HIGH}, allocator_heap());
+    assert_non_null(s);
+    s->kernel = kernel;
+    const double mean = similarity_ssim(s, &(flip_pair){one, two});
+    similarity_close(s);
+    return mean;
+}
+
+static void every_instruction_set_gives_the_same_bits(void **state)
+{
+    (void)state;
+    fill_waves(one, &SIZE, 0);
+    for (uint32_t seed = 1; seed <= 3; ++seed) {
+        fill_noise(two, &SIZE, seed);
+        const double plain = ssim_with(&similarity_kernel_plain);
+        assert_true(plain < 1);
+#if defined(__x86_64__)
+        if (__builtin_cpu_supports("avx2")) assert_true(ssim_with(&similarity_kernel_avx2) == plain);
+        if (__builtin_cpu_supports("avx512f")) assert_true(ssim_with(&similarity_kernel_avx512) == plain);
+#endif
+    }
 }
 
 static void equal_pictures_are_alike_by_one(void **state)
@@ -135,6 +160,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ssim_is_that_of_plain_windows),
+        cmocka_unit_test(every_instruction_set_gives_the_same_bits),
         cmocka_unit_test(equal_pictures_are_alike_by_one),
         cmocka_unit_test(even_pictures_follow_the_formulas),
         cmocka_unit_test(neither_picture_is_the_first),

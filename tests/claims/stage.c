@@ -70,6 +70,7 @@ const chain_spec *stage_chain(stage *s, const char *text)
 const chain_spec *stage_chain_of(stage *s, const char *text, uint32_t zone)
 {
     const char *own = s->scene->zones[zone].chain;
+    if (own && (strstr(own, "imagecache") || strstr(own, "occlusion"))) own = "octree+portal";
     return stage_chain(s, strcmp(text, "scene") != 0 ? text : own ? own : "frustum");
 }
 

@@ -33,7 +33,8 @@ tier stage_tier(void); // TIER_LONG with PORTCULLIS_LONG in the environment
 void stage_make(stage *s, const char *kind, uint64_t size);
 void stage_load(stage *s, const char *file); // a scene of a file; walk and tour may be missing: empty
 const chain_spec *stage_chain(stage *s, const char *text); // lives as long as the stage
-// "scene" as a chain: what the scene names for the zone, frustum where it names none.
+// "scene" as a chain: what the scene names for the zone, frustum where it names none, and octree+portal where it names what draws to know:
+// that is judged by test_flagship.c.
 const chain_spec *stage_chain_of(stage *s, const char *text, uint32_t zone);
 
 typedef struct stage_world { const chain_spec *const *chains; uint32_t more_movers; } stage_world; // chains by zone

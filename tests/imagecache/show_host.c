@@ -79,7 +79,7 @@ static void *room(size_t count, size_t size)
 
 cull_result show_open(show_session *s, show_host *h, const cull_zone *zone, const show_values *v)
 {
-    const char *const list[] = {v->level, v->walk, v->order, v->show, v->tree, v->tolerance, v->hidden, v->budget, v->memory_mib};
+    const char *const list[] = {v->level, v->walk, v->order, v->show, v->tree, v->tolerance, v->hidden, v->budget, v->memory_mib, "coarser"};
     const cull_plugin *plugin = plugin_named("imagecache");
     memset(s, 0, sizeof *s);
     assert_non_null(plugin);

@@ -10,10 +10,10 @@ typedef struct grid_values { const char *level, *walk, *order; } grid_values;
 
 static cull_result grid_open(session *s, culler_host *h, const cull_zone *zone, const grid_values *values)
 {
-    const char *const list[] = {values->level, values->walk, values->order, "geometry", "on", "1", "tested", "bounded", "256"};
+    const char *const list[] = {values->level, values->walk, values->order, "geometry", "on", "1", "tested", "bounded", "256", "coarser"};
     const cull_plugin *plugin = plugin_named("imagecache");
     assert_non_null(plugin);
-    assert_int_equal(plugin->descriptor->option_count, 9);
+    assert_int_equal(plugin->descriptor->option_count, 10);
     return session_open(s, h, plugin, zone, list);
 }
 
@@ -255,7 +255,7 @@ static void every_allocation_may_fail(void **state)
     hand_zone z;
     zone_of_boxes(boxes, 1000, &z);
     const cull_plugin *plugin = plugin_named("imagecache");
-    const char *const values[] = {"auto", "tree", "rings", "geometry", "on", "1", "tested", "bounded", "256"};
+    const char *const values[] = {"auto", "tree", "rings", "geometry", "on", "1", "tested", "bounded", "256", "coarser"};
     for (;; k++) {
         culler_host h;
         session s;

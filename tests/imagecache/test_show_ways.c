@@ -61,7 +61,7 @@ static void turning_costs_the_centre_alignment_pictures_and_the_parallelogram_no
 static void pictures_never_take_more_than_they_may(void **state)
 {
     (void)state;
-    const show_values values = {"5", "rings", "rings", "quad", "on", "1", "shown", "bounded", "1"};
+    const show_values values = {"5", "rings", "rings", "quad", "on", "1", "shown", "bounded", "16"};
     field f;
     uint64_t shown = 0, evicted = 0;
     field_open(&f, &values, 20000);
@@ -79,7 +79,7 @@ static void pictures_never_take_more_than_they_may(void **state)
             evicted += c->run_count == 0;
             held = held - bytes[c->slot] + taken;
             bytes[c->slot] = taken;
-            assert_true(held <= 1u << 20);
+            assert_true(held <= 16u << 20);
         }
         shown += f.s.batch.picture_count;
     }

@@ -314,8 +314,10 @@ const char *fake_frame_cut(fake_viewer *v, const fake_view *view, uint32_t flags
     cull_run *candidates = must_alloc(items * sizeof *candidates);
     cull_view told = view->view;
     fake_step s = {.visit = {.view = &told, .volumes = view->volumes, .volume_count = view->volume_count, .scratch = v->scratch,
-                             .movers = v->movers, .mover_count = v->mover_count, .answers = v->answers, .clipped = v->clipped, .clipped_count = v->clipped_count},
-                   .batch = {.runs = v->runs, .tests = v->tests}};
+                             .movers = v->movers, .mover_count = v->mover_count, .answers = v->answers, .clipped = v->clipped, .clipped_count = v->clipped_count,
+                             .pictures = v->pictures, .picture_count = v->picture_count, .captures = v->captures, .capture_count = v->capture_count},
+                   .batch = {.runs = v->runs, .tests = v->tests, .keep_pictures = v->keep_pictures, .keep_captures = v->keep_captures,
+                             .keep_clipped = v->keep_clipped}};
     cull_progress progress = CULL_MORE;
     const char *fault = NULL;
     told.frame = ++v->frame;
@@ -325,6 +327,9 @@ const char *fake_frame_cut(fake_viewer *v, const fake_view *view, uint32_t flags
         s.visit.candidate_count = list_candidates(v, candidates);
     }
     memset(v->drawn, 0, items + FAKE_MOVERS_MOST);
+    memset(v->keep_pictures, 1, sizeof v->keep_pictures);
+    memset(v->keep_captures, 1, sizeof v->keep_captures);
+    memset(v->keep_clipped, 1, sizeof v->keep_clipped);
     for (int p = 0; p < FAKE_PIXELS; p++) v->depth[p] = FAR;
     v->tests_asked = v->steps = v->drawn_count = v->waits = 0;
     hear_late(v, CULL_DONE, &s.visit.answer_count);

@@ -9,6 +9,7 @@
 #include "tests/common/random.h"
 #include "tests/frustum/fixture.h"
 
+enum { FAKE_PICTURES_MOST = 64 };
 enum { FAKE_WIDTH = 64, FAKE_HEIGHT = 36, FAKE_PIXELS = FAKE_WIDTH * FAKE_HEIGHT, FAKE_MOVERS_MOST = 32 };
 
 typedef struct fake_view {
@@ -51,6 +52,10 @@ typedef struct fake_viewer { // one query
     uint8_t *allowed;  // the candidates; all where the chain has none
     const cull_clipped *clipped; // of the culler before
     uint32_t clipped_count;
+    const cull_picture *pictures; // of the culler before, too, as captures are
+    const cull_capture *captures;
+    uint32_t picture_count, capture_count;
+    uint8_t keep_pictures[FAKE_PICTURES_MOST], keep_captures[FAKE_PICTURES_MOST], keep_clipped[FAKE_PICTURES_MOST]; // what the frame left of them
     void *scratch;
     cull_mover movers[FAKE_MOVERS_MOST];
     double depth[FAKE_PIXELS];
