@@ -42,14 +42,35 @@ crack_counts cracks_count(const crack_pictures *q, uint8_t *marks)
     return sum;
 }
 
+static int shows_mover(const float *depths, const mover_pictures *q, size_t at)
+{
+    return q->movers[at] > 0 && depths[at] == q->movers[at];
+}
+
+// Did what stands at a pixel around stand at (x, y), the mover there would be shown, or lost, as it is. Depths are larger where nearer.
+static int is_explained_nearby(const mover_pictures *q, uint32_t x, uint32_t y)
+{
+    const float mover = q->movers[(size_t)y * q->width_px + x];
+    const int is_shown = shows_mover(q->shown, q, (size_t)y * q->width_px + x);
+    for (uint32_t row = y ? y - 1 : 0; row <= y + 1 && row < q->height_px; ++row)
+        for (uint32_t column = x ? x - 1 : 0; column <= x + 1 && column < q->width_px; ++column) {
+            const size_t at = (size_t)row * q->width_px + column;
+            const int is_mover = shows_mover(q->geometry, q, at);
+            if (is_shown ? is_mover || q->geometry[at] < mover : !is_mover && q->geometry[at] > mover) return 1;
+        }
+    return 0;
+}
+
 mover_order movers_count(const mover_pictures *q)
 {
     mover_order sum = {0};
-    for (size_t i = 0; i < q->pixels; ++i) {
-        if (!(q->movers[i] > 0)) continue;
-        const int is_true = q->geometry[i] == q->movers[i], is_shown = q->shown[i] == q->movers[i];
-        sum.pixels += (uint64_t)(is_true || is_shown);
-        sum.wrong += (uint64_t)(is_true != is_shown);
-    }
+    for (uint32_t y = 0; y < q->height_px; ++y)
+        for (uint32_t x = 0; x < q->width_px; ++x) {
+            const size_t at = (size_t)y * q->width_px + x;
+            const int is_true = shows_mover(q->geometry, q, at), is_shown = shows_mover(q->shown, q, at);
+            sum.pixels += (uint64_t)(is_true || is_shown);
+            sum.wrong += (uint64_t)(is_true != is_shown);
+            sum.wrong_far += (uint64_t)(is_true != is_shown && !is_explained_nearby(q, x, y));
+        }
     return sum;
 }

@@ -27,9 +27,13 @@ crack_counts cracks_count(const crack_pictures *q, uint8_t *marks);
 // to the bit, since it is drawn by the same program in all three.
 typedef struct mover_pictures {
     const float *movers, *geometry, *shown;
-    size_t pixels;
+    uint32_t width_px, height_px;
 } mover_pictures;
-typedef struct mover_order { uint64_t pixels, wrong; } mover_order; // where a mover shows in either; where in one alone
+typedef struct mover_order {
+    uint64_t pixels, wrong; // where a mover shows in geometry or in the strategy's picture; where in one alone
+    uint64_t wrong_far;     // of those: more than a pixel's displacement explains. None of the 8 pixels around has, in geometry, what would explain it:
+                            // where the mover is lost something nearer than it, where it shows wrongly the mover or something farther
+} mover_order;
 mover_order movers_count(const mover_pictures *q);
 
 #endif

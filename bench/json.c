@@ -50,7 +50,7 @@ static json_t *context_of(const bench_result *b, const bench_request *q, const b
     gethostname(host, sizeof host - 1);
     cpu_model(model, sizeof model);
     snprintf(hash, sizeof hash, "%016llx", (unsigned long long)q->scene->hash);
-    return json_pack("{s:s, s:o, s:i, s:o, s:o, s:s, s:s, s:s, s:o, s:o, s:s, s:i, s:i, s:i, s:i, s:i, s:f, s:i, s:i, s:o, s:i, s:i}", "date", date, "host_name",
+    return json_pack("{s:s, s:o, s:i, s:o, s:o, s:s, s:s, s:s, s:o, s:o, s:s, s:i, s:i, s:i, s:i, s:i, s:s, s:i, s:f, s:i, s:i, s:o, s:i, s:i}", "date", date, "host_name",
                      json_text(host), "num_cpus", (int)sysconf(_SC_NPROCESSORS_ONLN), "cpu_model", json_text(model), "load_avg", load_average(),
                      "library_version", PORTCULLIS_VERSION, "library_build_type",
 #ifdef NDEBUG
@@ -60,7 +60,9 @@ static json_t *context_of(const bench_result *b, const bench_request *q, const b
 #endif
                      "commit", PORTCULLIS_COMMIT, "gl_renderer", json_text(b->gl_used ? b->gl_name : "none"), "scene", json_text(labels->scene),
                      "scene_hash", hash, "width_px", (int)q->width_px, "height_px", (int)q->height_px, "samples", (int)q->samples,
-                     "repeat", (int)q->repeat, "query_latency", (int)q->query_latency, "frame_ms", q->frame_ms, "zones", (int)b->zones, "portals", (int)b->portals,
+                     "repeat", (int)q->repeat, "query_latency", (int)q->query_latency,
+                     "costs", q->costs == BENCH_COSTS_FIXED ? "fixed" : "measured", "shards", (int)b->shards, "frame_ms", q->frame_ms, "zones", (int)b->zones,
+                     "portals", (int)b->portals,
                      "path", json_text(labels->path), "warmup_views", (int)bench_warmup_views(q->path), "json_schema_version", 1);
 }
 
@@ -102,6 +104,19 @@ static json_t *figures_of(const bench_figures *figures)
     return all;
 }
 
+// Whole nanoseconds: no clock tells more.
+static json_t *list_of(const double *values, uint32_t count)
+{
+    json_t *list = json_array();
+    for (uint32_t i = 0; i < count; ++i) json_array_append_new(list, json_integer((json_int_t)(values[i] + 0.5)));
+    return list;
+}
+
+static json_t *times_of(const bench_result *b, const bench_row *row)
+{
+    return json_pack("{s:o, s:o}", "cull_ns", list_of(row->least_cull_ns, b->least_count), "total_ns", list_of(row->least_total_ns, b->least_count));
+}
+
 json_t *bench_json_entry(const bench_result *b, const bench_request *q, const bench_labels *labels, const bench_row *row)
 {
     json_t *entry = head_of(b, q, labels, row);
@@ -115,7 +130,7 @@ json_t *bench_json_entry(const bench_result *b, const bench_request *q, const be
         {"steps", row->steps}, {"refreshes", row->refreshes}, {"picture_bytes", (double)row->picture_bytes}, {"zones", row->zones}, {"volumes", row->volumes}, {"crossings", row->crossings}, {"swaps", (double)row->swaps},
         {"faults", (double)row->faults}, {"plugins_opened", b->plugins_opened}, {"indices_built", row->indices_built}, {"gl_used", b->gl_used}};
     const counter of_gl[] = {
-        {"gl_ms", row->gl_ms}, {"total_ms", row->total_ms}, {"total_ms_p95", row->total_ms_p95}, {"total_ms_p99", row->total_ms_p99},
+        {"gl_ms", row->gl_ms}, {"total_ms", row->total_ms}, {"total_ms_mean", row->total_ms_mean}, {"total_ms_p95", row->total_ms_p95}, {"total_ms_p99", row->total_ms_p99},
         {"total_ms_p99_to_p50", ratio_by(row->total_ms > 0 ? row->total_ms_p99 / row->total_ms : 0, row->total_ms)},
         {"draw_calls", row->draw_calls}, {"state_changes", row->state_changes}};
     const counter of_truth[] = {
@@ -134,7 +149,8 @@ json_t *bench_json_entry(const bench_result *b, const bench_request *q, const be
         {"popping", ratio_by(row->popping, row->popping_views)}, {"popping_p99", ratio_by(row->popping_p99, row->popping_views)},
         {"popping_max", ratio_by(row->popping_max, row->popping_views)}, {"popping_view", ratio_by(row->popping_view, row->popping_views)},
         {"popping_views", row->popping_views},
-        {"mover_pixels", (double)row->mover_pixels}, {"mover_pixels_wrong", (double)row->mover_pixels_wrong}, {"pictures_measured", row->pictures_measured}};
+        {"mover_pixels", (double)row->mover_pixels}, {"mover_pixels_wrong", (double)row->mover_pixels_wrong},
+        {"mover_pixels_wrong_far", (double)row->mover_pixels_wrong_far}, {"pictures_measured", row->pictures_measured}};
     const counter of_movers[] = {{"mover_update_ns", ratio_by(row->mover_update_ns, row->mover_update_ns)}};
     const counter of_swaps[] = {{"swap_ms", ratio_by(row->swap_ms, (double)row->swaps)}};
     const counter last[] = {{"front_walls_only", row->front_walls_only}};
@@ -145,6 +161,7 @@ json_t *bench_json_entry(const bench_result *b, const bench_request *q, const be
     set_counters(entry, of_movers, 1, MEASURED);
     set_counters(entry, of_swaps, 1, MEASURED);
     set_counters(entry, last, sizeof last / sizeof *last, MEASURED);
+    if (q->times == BENCH_TIMES_OF_VIEWS) json_object_set_new(entry, "times", times_of(b, row));
     if (row->figures.count) json_object_set_new(entry, "figures", figures_of(&row->figures));
     return entry;
 }

@@ -5,7 +5,6 @@
 #include "pictures_parts.h"
 
 #include "images.h"
-#include "statistics.h"
 
 #include <string.h>
 
@@ -32,10 +31,8 @@ static int open_sums(pictures *p, uint32_t k)
     const bench_request *q = p->q->bench;
     picture_sums *s = &p->sums[k];
     if (!pictures_wanted(q, &p->q->strategies[k])) return 1;
-    s->flips = memory_alloc_zeroed(p->memory, q->path->count, sizeof *s->flips);
-    s->poppings = memory_alloc_zeroed(p->memory, q->path->count, sizeof *s->poppings);
     s->before = memory_alloc(p->memory, p->pixels, 4);
-    if (!s->flips || !s->poppings || !s->before) return 0;
+    if (!s->before) return 0;
     if (!q->images) return 1;
     s->worst = (worst_view){memory_alloc_zeroed(p->memory, p->pixels, 4), memory_alloc_zeroed(p->memory, p->pixels, 4),
                             memory_alloc_zeroed(p->memory, p->pixels, 4)};
@@ -45,7 +42,7 @@ static int open_sums(pictures *p, uint32_t k)
 static int wants_fronts(const pictures *p)
 {
     for (uint32_t k = 0; k < p->q->bench->strategy_count; ++k)
-        if (p->sums[k].flips && p->q->strategies[k].walls != WALLS_BOTH_SIDES) return 1;
+        if (p->sums[k].before && p->q->strategies[k].walls != WALLS_BOTH_SIDES) return 1;
     return 0;
 }
 
@@ -104,8 +101,6 @@ static void close_picture(const pictures *p, picture *s)
 
 static void close_sums(const pictures *p, picture_sums *s)
 {
-    memory_free(p->memory, s->flips, p->q->bench->path->count, sizeof(double));
-    memory_free(p->memory, s->poppings, p->q->bench->path->count, sizeof(double));
     memory_free(p->memory, s->before, p->pixels, 4);
     memory_free(p->memory, s->worst.truth, p->pixels, 4);
     memory_free(p->memory, s->worst.shown, p->pixels, 4);
@@ -192,18 +187,28 @@ static void give(pictures *p, picture_job *j, uint32_t view, uint32_t k)
     if (before) before->job = p->given;
 }
 
-static result look_at(pictures *p, uint32_t view, uint32_t k, uint64_t *faults)
+static result run_view(pictures *p, uint32_t view, uint32_t k)
 {
-    strategy_view out;
+    const records *kept = p->q->records;
+    const uint64_t swaps = p->q->strategies[k].times.swaps;
     const strategy_request request = {.view = view, .mode = RENDER_SHADED, .marks = MARK_NOTHING};
+    strategy_view out;
+    const result done = strategy_run_view(&p->q->strategies[k], &request, p->r, &out);
+    if (done != RESULT_OK || view < kept->first) return done;
+    picture_record *record = records_picture(kept, k, view); // the worker writes other members
+    record->faults = out.faults;
+    record->swaps = p->q->strategies[k].times.swaps - swaps;
+    return RESULT_OK;
+}
+
+static result look_at(pictures *p, uint32_t view, uint32_t k)
+{
     picture_job *j = &p->jobs[(p->given + 1) % PICTURES_JOBS];
-    result done = strategy_run_view(&p->q->strategies[k], &request, p->r, &out);
+    result done = run_view(p, view, k);
     worker_wait(p->worker, p->given + 1 > PICTURES_JOBS ? p->given + 1 - PICTURES_JOBS : 0);
     if (done == RESULT_OK) done = read_picture(p, &j->shown);
-    if (done != RESULT_OK) return done;
-    *faults += out.faults;
-    give(p, j, view, k);
-    return RESULT_OK;
+    if (done == RESULT_OK) give(p, j, view, k);
+    return done;
 }
 
 // Slots of several strategies are filled at once here, as nowhere else: only of so many as one machine has memory for.
@@ -220,20 +225,33 @@ static uint32_t group_end(const pictures *p, uint32_t first)
 static int wants_any(const pictures *p, uint32_t first, uint32_t end)
 {
     for (uint32_t k = first; k < end; ++k)
-        if (p->sums[k].flips) return 1;
+        if (p->sums[k].before) return 1;
     return 0;
+}
+
+// The view before the records' is looked at for what pops up after it; those before that are only shown.
+static result look_at_view(pictures *p, uint32_t view, uint32_t first, uint32_t end)
+{
+    const int is_compared = view + 1 >= p->q->records->first;
+    result done = is_compared ? draw_truth(p, view) : RESULT_OK;
+    for (uint32_t k = first; k < end && done == RESULT_OK; ++k)
+        if (p->sums[k].before) done = is_compared ? look_at(p, view, k) : run_view(p, view, k);
+    return done;
 }
 
 static result look_at_group(pictures *p, uint32_t first, uint32_t end, progress *bar)
 {
+    const records *kept = p->q->records;
     result done = RESULT_OK;
-    for (uint32_t k = first; k < end && done == RESULT_OK; ++k) // a restart forgets the pictures of all
-        if (p->sums[k].flips) done = strategy_restart(&p->q->strategies[k], p->r);
-    for (uint32_t v = 0; v < p->q->bench->path->count && done == RESULT_OK; ++v) {
+    for (uint32_t k = first; k < end && done == RESULT_OK; ++k) { // a restart forgets the pictures of all
+        if (!p->sums[k].before) continue;
+        kept->has_pictures[k] = 1;
+        done = strategy_turn(&p->q->strategies[k], p->q->bench->path->count - 1, p->r);
+        if (done == RESULT_OK) done = strategy_restart(&p->q->strategies[k], p->r);
+    }
+    for (uint32_t v = 0; v < kept->first + kept->count && done == RESULT_OK; ++v) {
         if (first == 0) progress_tell(bar, "pictures");
-        done = draw_truth(p, v);
-        for (uint32_t k = first; k < end && done == RESULT_OK; ++k)
-            if (p->sums[k].flips) done = look_at(p, v, k, &p->q->rows[k].picture_faults);
+        done = look_at_view(p, v, first, end);
     }
     return done;
 }
@@ -251,26 +269,9 @@ static result look_at_all(pictures *p, progress *bar)
 
 // ---- Results ----
 
-static void close_row(const pictures *p, picture_sums *s, bench_row *row)
+static result write_worst(const pictures *p, const picture_sums *s, const char *name)
 {
-    row->pictures_measured = s->views;
-    row->crack_pixels = s->cracks.holes + s->cracks.spills;
-    row->crack_inner = s->cracks.inner;
-    row->crack_spills = s->cracks.spills;
-    row->psnr = similarity_psnr_db(s->squared_error / s->views);
-    row->ssim = s->ssim / s->views;
-    row->has_ssim = p->similarity != NULL;
-    row->flip = mean(s->flips, s->views);
-    row->flip_p99 = percentile(s->flips, s->views, 0.99);
-    row->popping_views = s->popping_views;
-    if (s->popping_views) row->popping = mean(s->poppings, s->popping_views);
-    if (s->popping_views) row->popping_p99 = percentile(s->poppings, s->popping_views, 0.99);
-    row->faults += row->picture_faults;
-}
-
-static result write_worst(const pictures *p, const picture_sums *s, const bench_row *row)
-{
-    const image_name names[] = {{row->name, "truth", row->flip_view}, {row->name, "shown", row->flip_view}, {row->name, "flip", row->flip_view}};
+    const image_name names[] = {{name, "truth", s->flip_view}, {name, "shown", s->flip_view}, {name, "flip", s->flip_view}};
     const uint8_t *const pictures_of[] = {s->worst.truth, s->worst.shown, s->worst.heat};
     result done = RESULT_OK;
     for (int i = 0; i < 3 && done == RESULT_OK; ++i) done = image_write(p->q->bench, &names[i], pictures_of[i], p->r);
@@ -282,11 +283,8 @@ result pictures_run(const pictures_request *q, progress *bar, report *r)
     pictures p = {.q = q, .r = r, .memory = q->bench->services->memory, .pixels = (size_t)q->bench->width_px * q->bench->height_px};
     result done = open_pictures(&p) ? open_layout(&p) : report_no_memory(r, NULL);
     if (done == RESULT_OK) done = look_at_all(&p, bar);
-    for (uint32_t k = 0; k < q->bench->strategy_count && done == RESULT_OK; ++k) {
-        if (!p.sums[k].flips) continue;
-        close_row(&p, &p.sums[k], &q->rows[k]);
-        if (p.sums[k].worst.heat && q->rows[k].flip_max > 0) done = write_worst(&p, &p.sums[k], &q->rows[k]);
-    }
+    for (uint32_t k = 0; k < q->bench->strategy_count && done == RESULT_OK; ++k)
+        if (p.sums[k].worst.heat && p.sums[k].flip_max > 0) done = write_worst(&p, &p.sums[k], q->rows[k].name);
     close_all(&p);
     return done;
 }

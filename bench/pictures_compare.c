@@ -22,46 +22,41 @@ static void keep_worst(const pictures *p, const picture_job *j, picture_sums *s)
         }
 }
 
-static void count_cracks(const pictures *p, const picture_job *j)
+static void count_cracks(const pictures *p, const picture_job *j, picture_record *out)
 {
     const bench_request *q = p->q->bench;
     const uint32_t k = j->strategy;
     const float *must = p->q->strategies[k].walls == WALLS_BOTH_SIDES ? j->now->all.depths : j->now->fronts;
     const crack_pictures cracks = {j->now->all.depths, must, j->shown.depths, q->width_px, q->height_px};
     const crack_counts c = cracks_count(&cracks, p->marks);
-    bench_row *row = &p->q->rows[k];
-    if (c.holes + c.spills > row->crack_pixels_max) {
-        row->crack_pixels_max = c.holes + c.spills;
-        row->crack_view = j->view;
-    }
-    p->sums[k].cracks.holes += c.holes;
-    p->sums[k].cracks.inner += c.inner;
-    p->sums[k].cracks.spills += c.spills;
+    out->holes = c.holes;
+    out->inner = c.inner;
+    out->spills = c.spills;
 }
 
-static void count_movers(const pictures *p, const picture_job *j)
+static void count_movers(const pictures *p, const picture_job *j, picture_record *out)
 {
-    bench_row *row = &p->q->rows[j->strategy];
-    const mover_order c = movers_count(&(mover_pictures){j->now->movers, j->now->all.depths, j->shown.depths, p->pixels});
-    row->mover_pixels += c.pixels;
-    row->mover_pixels_wrong += c.wrong;
+    const mover_pictures movers = {j->now->movers, j->now->all.depths, j->shown.depths, p->q->bench->width_px, p->q->bench->height_px};
+    const mover_order c = movers_count(&movers);
+    out->mover_pixels = c.pixels;
+    out->mover_wrong = c.wrong;
+    out->mover_wrong_far = c.wrong_far;
 }
 
-static void compare(pictures *p, const picture_job *j)
+static void compare(pictures *p, const picture_job *j, picture_record *out)
 {
     const flip_pair pair = {j->now->all.rgba, j->shown.rgba};
     picture_sums *s = &p->sums[j->strategy];
-    bench_row *row = &p->q->rows[j->strategy];
     flip_keep_reference(p->flip, (uint64_t)j->view + 1);
-    const double flip = flip_compare(p->flip, &pair, p->map);
-    s->squared_error += similarity_squared_error(&pair, p->pixels);
-    if (p->similarity) s->ssim += similarity_ssim(p->similarity, &pair);
-    if (s->views == 0 || flip > row->flip_max) {
-        row->flip_max = flip;
-        row->flip_view = j->view;
-        if (s->worst.heat) keep_worst(p, j, s);
-    }
-    s->flips[s->views++] = flip;
+    out->flip = flip_compare(p->flip, &pair, p->map);
+    out->squared_error = similarity_squared_error(&pair, p->pixels);
+    if (p->similarity) out->ssim = similarity_ssim(p->similarity, &pair);
+    out->has_ssim = p->similarity != NULL;
+    out->is_measured = 1;
+    if (s->views++ > 0 && !(out->flip > s->flip_max)) return;
+    s->flip_max = out->flip;
+    s->flip_view = j->view;
+    if (s->worst.heat) keep_worst(p, j, s);
 }
 
 static int differ(const pictures *p, const uint8_t *a, const uint8_t *b)
@@ -89,28 +84,20 @@ static double popping_of(pictures *p, const picture_job *j)
     return flip_compare(p->flip, &(flip_pair){p->expected, j->shown.rgba}, NULL);
 }
 
-static void count_popping(pictures *p, const picture_job *j)
-{
-    picture_sums *s = &p->sums[j->strategy];
-    bench_row *row = &p->q->rows[j->strategy];
-    const double popping = popping_of(p, j);
-    if (s->popping_views == 0 || popping > row->popping_max) {
-        row->popping_max = popping;
-        row->popping_view = j->view;
-    }
-    s->poppings[s->popping_views++] = popping;
-}
-
 void pictures_compare(void *context, uint64_t job)
 {
     pictures *p = context;
     picture_job *j = &p->jobs[job % PICTURES_JOBS];
     picture_sums *s = &p->sums[j->strategy];
-    const int counts = j->view >= bench_warmup_views(p->q->bench->path);
-    count_cracks(p, j);
-    if (j->now->movers) count_movers(p, j);
-    if (counts) compare(p, j);
-    if (counts && j->before) count_popping(p, j);
+    const int is_kept = j->view >= p->q->records->first, counts = is_kept && j->view >= bench_warmup_views(p->q->bench->path);
+    if (is_kept) {
+        picture_record *out = records_picture(p->q->records, j->strategy, j->view);
+        count_cracks(p, j, out);
+        if (j->now->movers) count_movers(p, j, out);
+        if (counts) compare(p, j, out);
+        out->has_popping = counts && j->before;
+        if (out->has_popping) out->popping = popping_of(p, j);
+    }
     uint8_t *const shown = j->shown.rgba;
     j->shown.rgba = s->before;
     s->before = shown;

@@ -28,12 +28,10 @@ typedef struct worst_view { // copies, where images are wanted: history can't be
     uint8_t *truth, *shown, *heat;
 } worst_view;
 
-typedef struct picture_sums { // of one strategy; flips NULL: it is not wanted
-    double squared_error, ssim;
-    double *flips, *poppings; // by view that counts
-    uint32_t views, popping_views;
-    crack_counts cracks;
+typedef struct picture_sums { // of one strategy; before NULL: it is not wanted
     worst_view worst;
+    double flip_max; // of the worst
+    uint32_t views, flip_view;
     uint8_t *before; // what it showed in the view before
 } picture_sums;
 

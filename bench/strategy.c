@@ -22,15 +22,11 @@ static int open_arrays(strategy *s)
 {
     const allocator *memory = s->q->services->memory;
     const scene *sc = s->q->scene;
-    const size_t samples = (size_t)s->q->repeat * s->q->path->count;
     s->words = (sc->item_count + sc->mover_count + 31) / 32;
     s->drawn_bits = memory_alloc_zeroed(memory, s->words, sizeof(uint32_t));
     s->picture_bits = memory_alloc_zeroed(memory, s->words, sizeof(uint32_t));
     s->clipped_bits = memory_alloc_zeroed(memory, s->words, sizeof(uint32_t));
-    s->cull_ns = memory_alloc_zeroed(memory, samples, sizeof(double));
-    s->gl_ms = memory_alloc_zeroed(memory, samples, sizeof(double));
-    s->missed = memory_alloc_zeroed(memory, s->q->path->count, sizeof(uint64_t));
-    if (!s->drawn_bits || !s->picture_bits || !s->clipped_bits || !s->cull_ns || !s->gl_ms || !s->missed || !blame_open(s)) return 0;
+    if (!s->drawn_bits || !s->picture_bits || !s->clipped_bits || !blame_open(s)) return 0;
     if (s->q->ids == BENCH_IDS) {
         s->ids = memory_alloc_zeroed(memory, (size_t)sc->item_count + RUNS_OVERWRITE, sizeof(uint32_t));
         if (!s->ids) return 0;
@@ -109,7 +105,6 @@ void strategy_close(strategy *s)
 {
     if (!s->q) return;
     const allocator *memory = s->q->services->memory;
-    const size_t samples = (size_t)s->q->repeat * s->q->path->count;
     render_layout_close(s->layout);
     world_view_close(s->view);
     chains_close(s);
@@ -122,9 +117,6 @@ void strategy_close(strategy *s)
     memory_free(memory, s->picture_bits, s->words, sizeof(uint32_t));
     memory_free(memory, s->clipped_bits, s->words, sizeof(uint32_t));
     memory_free(memory, s->ids, (size_t)s->q->scene->item_count + RUNS_OVERWRITE, sizeof(uint32_t));
-    memory_free(memory, s->cull_ns, samples, sizeof(double));
-    memory_free(memory, s->gl_ms, samples, sizeof(double));
-    memory_free(memory, s->missed, s->q->path->count, sizeof(uint64_t));
     *s = (strategy){0};
 }
 
@@ -153,7 +145,7 @@ frame_input strategy_input(strategy *s, uint32_t view)
     return (frame_input){.camera = &q->path->cameras[view],
                          .frame = {.width_px = q->width_px, .height_px = q->height_px, .frame = view + 1, .flags = view_flags(q->path, view),
                                    .purpose = CULL_VIEW_MAIN},
-                         .driver = driver_of(s)};
+                         .driver = s->between.driver ? s->between.driver(s->between.user, driver_of(s)) : driver_of(s)};
 }
 
 static void move_movers(strategy *s, uint32_t view)
@@ -200,6 +192,7 @@ result strategy_run_view(strategy *s, const strategy_request *w, report *r, stra
     if (s->g) {
         const frame_request frame = {.camera = input.camera, .width_px = s->q->width_px, .height_px = s->q->height_px, .mode = w->mode,
                                      .scissor = w->scissor};
+        renderer_forget_state(s->g); // what was drawn before it is no part of what a view costs
         start = process_cpu_ns();
         const result begun = renderer_begin(s->g, &frame, r);
         if (begun != RESULT_OK) return begun;

@@ -32,6 +32,12 @@ typedef struct strategy_times { // CPU time of what is no view's culling
     uint64_t movers, swaps; // moved, zones swapped
 } strategy_times;
 
+// Who stands between a frame and the renderer; NULL: nobody.
+typedef struct strategy_between {
+    frame_driver (*driver)(void *user, frame_driver real);
+    void *user;
+} strategy_between;
+
 typedef struct strategy {
     const bench_request *q;
     const bench_strategy_request *chains;
@@ -58,9 +64,8 @@ typedef struct strategy {
     uint32_t id_faults, record_failed;                // id_faults: more ids than items
     render_scissor cut;
     uint32_t cut_is_told;
-    double *cull_ns, *gl_ms; // repeat * views samples
-    uint64_t *missed;        // pixels a view, the worst pass
     strategy_times times;    // since it was opened
+    strategy_between between;
     double build_ms;         // of the chains it was opened with
     size_t index_bytes;
     bench_figures figures;  // see strategy_ask_figures
@@ -75,6 +80,10 @@ result strategy_attach(strategy *s, renderer *g, report *r);
 
 // A new view without history, pictures or tests: what each pass over the path starts with.
 result strategy_restart(strategy *s, report *r);
+// Chains as that view has them, as if it had just been run: where a pass that this process left out would have ended.
+result strategy_turn(strategy *s, uint32_t view, report *r);
+// No view's answer depends on those before: any may be the first.
+uint32_t strategy_is_stateless(const strategy *s);
 // After the passes: what the chains tell of their indices, and of the views there were, which end for it.
 result strategy_ask_figures(strategy *s, report *r);
 // One view: moves movers, swaps chains when it is time, culls, draws where there is a renderer. gl_ms: 0 without. Leaves D

@@ -245,3 +245,18 @@ result chains_turn(strategy *s, uint32_t view, report *r)
     if (done == RESULT_OK) done = chains_tell_pieces(s, r);
     return done == RESULT_OK ? renderer_reserve(s->g, strategy_tests(s), r) : done;
 }
+
+result strategy_turn(strategy *s, uint32_t view, report *r)
+{
+    return chains_turn(s, view, r);
+}
+
+uint32_t strategy_is_stateless(const strategy *s)
+{
+    if (s->chains->swap_views || s->has_pictures) return 0;
+    for (uint32_t z = 0; z < s->q->scene->zone_count; ++z) {
+        const chain *c = world_chain(s->world, z);
+        if (c && !(c->promises & CULL_STATELESS)) return 0;
+    }
+    return 1;
+}

@@ -125,5 +125,5 @@ static uint32_t drive_collect(void *user, uint32_t zone, collect_how how, uint32
 frame_driver driver_of(strategy *s)
 {
     if (!s->g) return (frame_driver){0};
-    return (frame_driver){s, drive_draw, drive_draw_movers, drive_capture, drive_show, drive_test, drive_collect, drive_draw_clipped, drive_check_slots};
+    return (frame_driver){s, drive_draw, drive_draw_movers, drive_capture, drive_show, drive_test, drive_collect, drive_draw_clipped, drive_check_slots, NULL};
 }

@@ -181,6 +181,11 @@ result truth_add_view(truth *t, renderer *g, const camera *c, report *r)
     return buffer_append(&t->views, &view, 1) ? RESULT_OK : report_no_memory(r, t->scene->path);
 }
 
+result truth_skip_view(truth *t, report *r)
+{
+    return buffer_append(&t->views, &(truth_view){.first = (uint32_t)t->items.count}, 1) ? RESULT_OK : report_no_memory(r, t->scene->path);
+}
+
 // Sub-pixel shifts on a 4 x 4 grid; a single one stands at the centre.
 static void jitter_of(uint32_t i, uint32_t jitters, double out[2])
 {

@@ -49,6 +49,8 @@ void truth_close(truth *t);
 // The picture of the view, into t->picture: what truth_add_view counts.
 result truth_draw(truth *t, renderer *g, const id_request *q, report *r);
 result truth_add_view(truth *t, renderer *g, const camera *c, report *r);
+// A view that nobody asks about: its number is taken, nothing is drawn.
+result truth_skip_view(truth *t, report *r);
 // A view of its own whose items are those of all sub-pixel shifts, or of a larger picture: what CONSERVATIVE is tested
 // against. Its floor stays 0.
 typedef struct truth_finer { uint32_t jitters; uint32_t scale; } truth_finer; // 16 and 1, or 1 and 4

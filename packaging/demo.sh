@@ -63,7 +63,7 @@ measure table.txt bench.json "$out/demo.obj" "$out/demo.views" --culler none --c
 # zones; in the last one each zone goes through all of them.
 "$portcullis" generate flagship --size 600 -o "$out/flagship.json"
 "$portcullis" generate views --scene "$out/flagship.json" --views path:walk -o "$out/flagship.views"
-awk 'int((NR - 1) / 10) % 8 == 0' "$out/flagship.views" >"$out/flagship_parts.views"
+awk 'int((NR - 1) / 10) % 12 == 0' "$out/flagship.views" >"$out/flagship_parts.views"
 measure flagship_table.txt flagship_bench.json "$out/flagship.json" "$out/flagship_parts.views" --size 640x360 --repeat 1 --culler scene --culler frustum \
     --culler bsp+portal --culler octree+occlusion --culler imagecache --swap 10
 for view in 60 312 600; do # from the walk

@@ -1,8 +1,11 @@
 // A small standalone driver for fuzz targets, so that they run as ordinary tests from every compiler. Repeatable.
 // SPDX-License-Identifier: MIT
-// With arguments it runs those files instead, as libFuzzer does: to repeat what a fuzzer has found.
+// With arguments it runs those files instead, as libFuzzer does: to repeat what a fuzzer has found. Without, it begins with
+// the target's kept corpus, in which every input that once failed stands too.
+#define _XOPEN_SOURCE 700
 #include "fuzz_driver.h"
 
+#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -29,14 +32,19 @@ static size_t below(fuzz *f, size_t count)
     return count ? (size_t)(bits(f) % count) : 0;
 }
 
-static void run(fuzz *f)
+static void run_exact(fuzz *f, const void *bytes, size_t size)
 {
-    uint8_t *exact = malloc(f->size ? f->size : 1); // so that reading past the end is seen by ASan
+    uint8_t *exact = malloc(size ? size : 1); // so that reading past the end is seen by ASan
     if (!exact) abort();
-    if (f->size) memcpy(exact, f->input, f->size);
-    LLVMFuzzerTestOneInput(exact, f->size);
+    if (size) memcpy(exact, bytes, size);
+    LLVMFuzzerTestOneInput(exact, size);
     free(exact);
     f->runs++;
+}
+
+static void run(fuzz *f)
+{
+    run_exact(f, f->input, f->size);
 }
 
 // ---- Edits ----
@@ -150,21 +158,39 @@ static void run_pieces(fuzz *f, const char *name)
     free(bytes);
 }
 
+static void run_file(fuzz *f, const char *path)
+{
+    size_t size = 0;
+    char *bytes = read_file(path, &size); // NULL of an empty file
+    run_exact(f, bytes, size);
+    free(bytes);
+}
+
+static void run_corpus(fuzz *f)
+{
+    struct dirent **entries = NULL;
+    const int count = scandir(FUZZ_CORPUS, &entries, NULL, alphasort);
+    for (int i = 0; i < count; ++i) {
+        char path[2048];
+        const int length = snprintf(path, sizeof path, "%s/%s", FUZZ_CORPUS, entries[i]->d_name);
+        if (entries[i]->d_name[0] != '.' && length > 0 && (size_t)length < sizeof path) run_file(f, path);
+        free(entries[i]);
+    }
+    free(entries);
+}
+
 int main(int argc, char **argv)
 {
     static fuzz f; // too large for a stack
     f.state = 20240229;
-    for (int i = 1; i < argc; ++i) {
-        size_t size = 0;
-        char *bytes = read_file(argv[i], &size);
-        if (!bytes) continue;
-        LLVMFuzzerTestOneInput((const uint8_t *)bytes, size);
-        free(bytes);
-    }
+    for (int i = 1; i < argc; ++i) run_file(&f, argv[i]);
     if (argc > 1) return 0;
+    run_corpus(&f);
+    const unsigned kept = f.runs;
+    f.runs = 0;
     for (int i = 0; fuzz_seeds[i]; ++i) run_seed(&f, fuzz_seeds[i], strlen(fuzz_seeds[i]), MUTATIONS_A_SEED);
     for (int i = 0; fuzz_files[i]; ++i) run_pieces(&f, fuzz_files[i]);
     run_seed(&f, "", 0, 0);
-    printf("%u inputs\n", f.runs);
+    printf("%u inputs, and %u kept ones\n", f.runs, kept);
     return f.runs > 0 ? 0 : 1;
 }

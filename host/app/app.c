@@ -3,7 +3,6 @@
 #define _GNU_SOURCE
 #include "app.h"
 
-#include "../core/search_path.h"
 #include "../import/number.h"
 
 #include <stdio.h>
@@ -13,19 +12,13 @@
 
 enum { PATH_BYTES = 4096 };
 
-static void add_beside_executable(app *a, search_path *p)
+static void add_beside_executable(app *a)
 {
-    static const char *const places[] = {"../lib/portcullis", "../plugins"}; // installed; build tree
     char path[PATH_BYTES];
-    const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 32);
+    const ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
     if (length <= 0) return;
     path[length] = 0;
-    char *slash = strrchr(path, '/');
-    if (!slash) return;
-    for (size_t i = 0; i < sizeof places / sizeof *places; ++i) {
-        snprintf(slash + 1, 32, "%s", places[i]);
-        search_path_add(p, arena_text(&a->texts, path, strlen(path)));
-    }
+    search_path_add_beside(&a->search, SEARCH_BESIDE_EXECUTABLE, path, &a->texts);
 }
 
 result app_open(app *a, const app_plugin_files *files)
@@ -33,10 +26,9 @@ result app_open(app *a, const app_plugin_files *files)
     *a = (app){.memory = allocator_heap(), .report = report_to_stderr()};
     a->texts = arena_make(a->memory);
     host_services_fill(&a->services, a->memory, &a->report);
-    search_path p = {0};
-    search_path_add_variable(&p, &a->texts);
-    add_beside_executable(a, &p);
-    loader_options options = {.folders = p.folders, .folder_count = p.count};
+    search_path_add_environment(&a->search, &a->texts);
+    add_beside_executable(a);
+    loader_options options = {.folders = a->search.folders, .folder_count = a->search.count};
     if (files) {
         options.files = files->files;
         options.file_count = files->count;

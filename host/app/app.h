@@ -4,6 +4,7 @@
 #define PORTCULLIS_HOST_APP_H
 
 #include "../core/chain.h"
+#include "../core/search_path.h"
 #include "../import/import.h"
 #include "../render/render.h"
 
@@ -17,10 +18,16 @@ int command_plugins(int argc, char **argv);
 int command_info(int argc, char **argv);
 int command_compile(int argc, char **argv);
 int command_bench(int argc, char **argv);
+int command_merge(int argc, char **argv);
 int command_render(int argc, char **argv);
 int command_explain(int argc, char **argv);
+int command_first_miss(int argc, char **argv);
+int command_stress(int argc, char **argv);
+int command_auto(int argc, char **argv);
 int command_view(int argc, char **argv);
 int command_generate(int argc, char **argv);
+int command_check(int argc, char **argv);
+int command_new_culler(int argc, char **argv);
 
 // What every command that loads cullers holds.
 typedef struct app {
@@ -28,6 +35,7 @@ typedef struct app {
     report report;
     arena texts;
     host_services services;
+    search_path search;
     loader *plugins;
     scene *scene;
 } app;
@@ -38,7 +46,7 @@ typedef struct app_plugin_files {
     uint32_t count;
 } app_plugin_files;
 
-// Search path: explicit files, PORTCULLIS_PLUGIN_PATH, the install's folder, the build tree beside the executable.
+// Search path: explicit files, PORTCULLIS_PLUGIN_PATH, the user's folder, the install's, the build tree beside the executable.
 result app_open(app *a, const app_plugin_files *files);
 void app_close(app *a);
 int app_exit_code(result done);

@@ -26,7 +26,8 @@ result chains_check(app *a, const char *const *cullers, uint32_t culler_count, c
 // an exact one given twice.
 result chain_book_open(app *a, const zone_options *zones, chain_book *out);
 void chain_book_close(chain_book *b); // zeroed is fine; texts and specs stay with the app
-// culler: a chain, or "scene" (NULL too): what the scene names for each zone, frustum where it names none.
+// culler: a chain, or "scene" (NULL too): what the scene names for each zone, frustum where it names none; or NAME=CHAIN;CHAIN, any number
+// of names: zones called so have theirs, all others the last. A zone that --zone names has what that says.
 result chain_book_strategy(chain_book *b, const char *culler, bench_strategy_request *out);
 // swap/N over the sets of those strategies.
 result chain_book_swap(chain_book *b, const bench_strategy_request *strategies, uint32_t count, uint32_t views, bench_strategy_request *out);

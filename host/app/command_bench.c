@@ -2,12 +2,17 @@
 // SPDX-License-Identifier: MIT
 #define _POSIX_C_SOURCE 200809L
 #include "../../bench/bench.h"
+#include "../../bench/against.h"
+#include "../../bench/shard.h"
+#include "../../bench/trace.h"
 #include "../core/file.h"
+#include "bench_results.h"
 #include "chains.h"
 
 #include <argp.h>
 #include <errno.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -32,8 +37,19 @@ enum {
     KEY_PICTURES,
     KEY_NO_PICTURES,
     KEY_NO_MOVERS,
-    KEY_PLUGIN
+    KEY_PLUGIN,
+    KEY_SHARD,
+    KEY_COSTS,
+    KEY_FRAMES,
+    KEY_TRACE,
+    KEY_AGAINST,
+    KEY_REFERENCE,
+    KEY_SLOWER,
+    KEY_TIMES
 };
+
+typedef enum shard_choice { SHARD_AUTO, SHARD_NONE, SHARD_GIVEN } shard_choice; // AUTO: as the starter's environment says
+enum { PART_BYTES = 4096 };
 
 typedef enum movers_choice { MOVERS_DRAWN, MOVERS_AWAY } movers_choice;
 
@@ -50,16 +66,24 @@ typedef struct arguments {
     bench_pictures pictures;
     movers_choice movers;
     app_plugin_files plugins;
+    shard_choice sharding;
+    bench_shard shard;
+    char part[PART_BYTES];
+    bench_costs costs;
+    bench_times times;
+    const char *frames, *trace;
+    against_request against; // path NULL: nobody asks
 } arguments;
 
 static const struct argp_option options[] = {
     {"views", KEY_VIEWS, APP_VIEWS, 0, "the camera path; needed", 0},
     {"culler", KEY_CULLER, "CHAIN|scene", 0,
      "a strategy: this chain in all zones, such as frustum or octree[leaf=64]+occlusion; "
-     "scene: what the scene file names per zone, frustum where it names none (default); may stand several times",
+     "scene: what the scene file names per zone, frustum where it names none (default); "
+     "NAME=CHAIN;CHAIN: zones of that name have the first chain, all others the last one, and so on with further names; may stand several times",
      0},
     {"zone", KEY_ZONE, "NAME=CHAIN", 0,
-     "in every strategy these zones take this chain; NAME may be a pattern such as cellar*; may stand several times", 0},
+     "in every strategy these zones take this chain, whatever --culler says; NAME may be a pattern such as cellar*; may stand several times", 0},
     {"swap", KEY_SWAP, "N", 0, "a further strategy swap/N: every N views each zone goes on to its chain of the next --culler, neighbours one apart",
      0},
     {"size", KEY_SIZE, "WxH", 0, "of the picture (default 1280x720)", 0},
@@ -79,9 +103,42 @@ static const struct argp_option options[] = {
     {"query-latency", KEY_LATENCY, "L", 0, "an answer is readable L steps later (default 0)", 0},
     {"json", KEY_JSON, "FILE|-", 0, "results in Google Benchmark's shape", 0},
     {"csv", KEY_CSV, "FILE|-", 0, "results as CSV, a line a strategy", 0},
+    {"frames", KEY_FRAMES, "FILE|-", 0, "a line a strategy and view as CSV: counters, and medians of times over the passes", 0},
+    {"trace", KEY_TRACE, "FILE", 0, "spans of flow, steps, draws, tests and captures of one more pass in Chrome's Trace Event Format, for Perfetto", 0},
+    {"against", KEY_AGAINST, "OLD.json", 0,
+     "beside an earlier run of bench --times: exit code 1 when a strategy is slower by the rule of docs/bench.md, or a counter is worse", 0},
+    {"reference", KEY_REFERENCE, "NAME", 0, "the strategy that tells how fast the machine is today (default brute, else none)", 0},
+    {"slower", KEY_SLOWER, "PERCENT", 0, "what counts as slower: so much and more, 1 to 1000 (default 10)", 0},
+    {"times", KEY_TIMES, NULL, 0, "the JSON has each view's least times too", 0},
+    {"costs", KEY_COSTS, "measured|fixed", 0,
+     "what cullers weigh pictures by: of this renderer (default), or fixed numbers, so that another run draws the same; shards take fixed ones", 0},
+    {"shard", KEY_SHARD, "I/N|auto|none", 0,
+     "only the I-th of N parts of the path, into a part FILE.I-of-N of what --json or --csv names, for portcullis merge; a stopped shard goes on when it is started "
+     "again (default auto: I and N from Slurm's, Open MPI's or PMI's environment, none without)",
+     0},
     {"plugin", KEY_PLUGIN, "FILE", 0, "look at this library first; may stand several times", 0},
     {0},
 };
+
+static int parse_shard(const char *text, arguments *a)
+{
+    a->sharding = strcmp(text, "auto") == 0 ? SHARD_AUTO : strcmp(text, "none") == 0 ? SHARD_NONE : SHARD_GIVEN;
+    return a->sharding != SHARD_GIVEN || shard_parse(text, &a->shard);
+}
+
+static int parse_costs(const char *text, bench_costs *out)
+{
+    *out = strcmp(text, "fixed") == 0 ? BENCH_COSTS_FIXED : BENCH_COSTS_MEASURED;
+    return *out == BENCH_COSTS_FIXED || strcmp(text, "measured") == 0;
+}
+
+static int parse_slower(const char *text, against_request *out)
+{
+    uint32_t percent;
+    const int good = parse_count(text, 1, 1000, &percent);
+    if (good) out->least_percent = percent;
+    return good;
+}
 
 static void parse_numbers(int key, const char *text, struct argp_state *state)
 {
@@ -92,6 +149,9 @@ static void parse_numbers(int key, const char *text, struct argp_state *state)
     if (key == KEY_SAMPLES && !parse_count(text, 1, BENCH_SAMPLES_MOST, &a->samples)) argp_error(state, "--samples takes 1 to 8, not '%s'", text);
     if (key == KEY_FRAME_MS && !parse_ms(text, &a->frame_ms)) argp_error(state, "--frame-ms takes 0 to 100000 milliseconds, not '%s'", text);
     if (key == KEY_SWAP && !parse_count(text, 1, SWAP_VIEWS_MOST, &a->swap)) argp_error(state, "--swap takes 1 to 1000000 views, not '%s'", text);
+    if (key == KEY_SHARD && !parse_shard(text, a)) argp_error(state, "--shard takes I/N with 1 <= I <= N <= 1000000, auto or none, not '%s'", text);
+    if (key == KEY_SLOWER && !parse_slower(text, &a->against)) argp_error(state, "--slower takes 1 to 1000 percent, not '%s'", text);
+    if (key == KEY_COSTS && !parse_costs(text, &a->costs)) argp_error(state, "--costs takes measured or fixed, not '%s'", text);
     if (key == KEY_DOORS && !app_doors_parse(text, &a->doors)) argp_error(state, "--doors takes open, shut or scene, not '%s'", text);
 }
 
@@ -99,6 +159,41 @@ static void add_text(const char **list, uint32_t *count, uint32_t most, const ch
 {
     if (*count == most) argp_error(state, "too many of one option");
     list[(*count)++] = text;
+}
+
+static const char *variable(const char *name)
+{
+    return getenv(name);
+}
+
+// Where this process's part goes, when there is one.
+static void check_shard(arguments *a, struct argp_state *state)
+{
+    const char *base = a->json && !is_stdout(a->json) ? a->json : a->csv && !is_stdout(a->csv) ? a->csv : NULL;
+    if (a->sharding == SHARD_AUTO) (void)shard_of_environment(variable, &a->shard);
+    if (!a->shard.count) return;
+    if (!base) argp_error(state, "a shard's part is named after a file: name one with --json or --csv, or say --shard none");
+    if (a->against.path) argp_error(state, "--against compares times of one process: leave it out, or say --shard none");
+    if (a->frames || a->trace) argp_error(state, "--frames and --trace are of the whole path: give --frames to portcullis merge, or say --shard none");
+    if (a->images) argp_error(state, "--images shows the worst view of the whole path: leave it out, or say --shard none");
+    if (snprintf(a->part, sizeof a->part, "%s.%u-of-%u", base, a->shard.index, a->shard.count) >= (int)sizeof a->part - 16)
+        argp_error(state, "the name '%s' is too long", base);
+    a->shard.part = a->part;
+    a->costs = BENCH_COSTS_FIXED;
+}
+
+static void check_arguments(arguments *a, struct argp_state *state)
+{
+    if (!a->scene) argp_error(state, "SCENE is missing");
+    if (a->truth == BENCH_NO_TRUTH && a->samples > 1) argp_error(state, "--samples is about the truth: leave --no-truth out");
+    if (a->images && a->samples > 1) argp_error(state, "--images shows pixels: leave --samples out");
+    if (a->size.width_px * a->samples > APP_SIDE_MOST || a->size.height_px * a->samples > APP_SIDE_MOST)
+        argp_error(state, "--size times --samples is over %d: a picture of %d x %d samples is the largest", APP_SIDE_MOST, APP_SIDE_MOST, APP_SIDE_MOST);
+    if (is_stdout(a->json) + is_stdout(a->csv) + is_stdout(a->frames) > 1) argp_error(state, "--json, --csv and --frames can't share stdout: name a file");
+    if (!a->views) argp_error(state, "--views is missing; name a .views file, auto:N, auto:walk:N, auto:edges:N or path:NAME");
+    if (a->swap && a->culler_count < 2) argp_error(state, "--swap needs two or more --culler to go through");
+    if (a->swap && a->culler_count == STRATEGIES_MOST) argp_error(state, "too many of one option");
+    check_shard(a, state);
 }
 
 static error_t parse(int key, char *text, struct argp_state *state)
@@ -115,6 +210,11 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_IMAGES: a->images = text; break;
     case KEY_JSON: a->json = text; break;
     case KEY_CSV: a->csv = text; break;
+    case KEY_FRAMES: a->frames = text; break;
+    case KEY_TRACE: a->trace = text; break;
+    case KEY_AGAINST: a->against.path = text; break;
+    case KEY_REFERENCE: a->against.reference = text; break;
+    case KEY_TIMES: a->times = BENCH_TIMES_OF_VIEWS; break;
     case KEY_PICTURES: a->pictures = BENCH_PICTURES_ALL; break;
     case KEY_NO_PICTURES: a->pictures = BENCH_PICTURES_NONE; break;
     case KEY_SIZE:
@@ -123,90 +223,18 @@ static error_t parse(int key, char *text, struct argp_state *state)
     case KEY_SAMPLES:
     case KEY_FRAME_MS:
     case KEY_SWAP:
+    case KEY_SHARD:
+    case KEY_COSTS:
+    case KEY_SLOWER:
     case KEY_DOORS: parse_numbers(key, text, state); break;
     case ARGP_KEY_ARG:
         if (a->scene) argp_error(state, "one SCENE, not also '%s'", text);
         a->scene = text;
         break;
-    case ARGP_KEY_END:
-        if (!a->scene) argp_error(state, "SCENE is missing");
-        if (a->truth == BENCH_NO_TRUTH && a->samples > 1) argp_error(state, "--samples is about the truth: leave --no-truth out");
-        if (a->images && a->samples > 1) argp_error(state, "--images shows pixels: leave --samples out");
-        if (a->size.width_px * a->samples > APP_SIDE_MOST || a->size.height_px * a->samples > APP_SIDE_MOST)
-            argp_error(state, "--size times --samples is over %d: a picture of %d x %d samples is the largest", APP_SIDE_MOST, APP_SIDE_MOST, APP_SIDE_MOST);
-        if (a->json && a->csv && strcmp(a->json, "-") == 0 && strcmp(a->csv, "-") == 0) argp_error(state, "--json and --csv can't both go to stdout: name a file");
-        if (!a->views) argp_error(state, "--views is missing; name a .views file, auto:N, auto:walk:N, auto:edges:N or path:NAME");
-        if (a->swap && a->culler_count < 2) argp_error(state, "--swap needs two or more --culler to go through");
-        if (a->swap && a->culler_count == STRATEGIES_MOST) argp_error(state, "too many of one option");
-        break;
+    case ARGP_KEY_END: check_arguments(a, state); break;
     default: return ARGP_ERR_UNKNOWN;
     }
     return 0;
-}
-
-static void print_text(const bench_text *text, FILE *to)
-{
-    fwrite(text->bytes, 1, text->size, to);
-}
-
-static result write_text(app *a, const char *file, const bench_text *text)
-{
-    if (strcmp(file, "-") != 0) return file_write(file, text->bytes, text->size, &a->report);
-    print_text(text, stdout);
-    if (text->size && text->bytes[text->size - 1] != '\n') printf("\n");
-    return RESULT_OK;
-}
-
-typedef struct output {
-    const bench_request *bench;
-    const bench_labels *labels;
-    const char *json, *csv; // files, "-" or NULL
-} output;
-
-static int is_stdout(const char *file)
-{
-    return file && strcmp(file, "-") == 0;
-}
-
-typedef result (*text_maker)(const bench_result *b, const bench_request *q, const bench_labels *labels, bench_text *out);
-
-static result write_made(app *a, const output *o, const bench_result *b, text_maker make, const char *file)
-{
-    bench_text text;
-    if (!file) return RESULT_OK;
-    if (make(b, o->bench, o->labels, &text) != RESULT_OK) return report_no_memory(&a->report, NULL);
-    const result done = write_text(a, file, &text);
-    memory_free(a->memory, text.bytes, text.size + 1, 1);
-    return done;
-}
-
-// The table is for people where other results go to stdout.
-static result write_results(app *a, const output *o, const bench_result *b)
-{
-    bench_text text;
-    if (bench_table(b, o->bench, o->labels, &text) != RESULT_OK) return report_no_memory(&a->report, NULL);
-    print_text(&text, is_stdout(o->json) || is_stdout(o->csv) ? stderr : stdout);
-    memory_free(a->memory, text.bytes, text.size + 1, 1);
-    const result done = write_made(a, o, b, bench_json, o->json);
-    return done == RESULT_OK ? write_made(a, o, b, bench_csv, o->csv) : done;
-}
-
-static uint32_t tell_failures(app *a, const arguments *q, const bench_result *b)
-{
-    uint32_t failed = 0;
-    for (uint32_t i = 0; i < b->row_count; ++i) {
-        const bench_row *row = &b->rows[i];
-        if (row->picture_differs)
-            report_error(&a->report, NULL, 0, "%s: %llu pixels of %u views show something else than the items that it says it drew", row->name,
-                         (unsigned long long)row->picture_differs, row->pictures_compared);
-        else if (bench_check_failed(row))
-            report_error(&a->report, NULL, 0, "%s promises to lose nothing, and missed %llu pixels and %llu items; worst is view %u", row->name,
-                         (unsigned long long)row->missed_pixels, (unsigned long long)row->missed_items, row->worst_view);
-        failed += bench_check_failed(row);
-        if (q->truth == BENCH_TRUTH && row->items_visible <= 0 && i == 0)
-            report_warning(&a->report, NULL, 0, "no view of this path sees anything; that nothing is missed says nothing");
-    }
-    return failed;
 }
 
 static result make_strategies(app *a, const arguments *q, bench_strategy_request *out, uint32_t *out_count)
@@ -221,6 +249,90 @@ static result make_strategies(app *a, const arguments *q, bench_strategy_request
     return done;
 }
 
+// Rows of one shard mean nothing alone: where its part is, and what to do with all of them.
+static void tell_part(app *a, const bench_request *q)
+{
+    const view_range range = shard_range(&q->shard, q->path->count);
+    const int base = (int)(strrchr(q->shard.part, '.') - q->shard.part);
+    report_note(&a->report, "%s: views %u to %u of %u; with all %u parts: portcullis merge %.*s.*-of-%u --json %.*s", q->shard.part, range.first, range.end,
+                q->path->count, q->shard.count, base, q->shard.part, q->shard.count, base, q->shard.part);
+}
+
+static bench_output output_of(const arguments *q, const bench_request *bench, const bench_labels *labels)
+{
+    return (bench_output){bench, labels, q->json, q->csv, q->frames};
+}
+
+// What seems slower is measured again before it is said: the least of more passes, which what is truly slower does not get under.
+enum { AGAINST_RUNS = 3 };
+
+static result compare_again(app *a, const arguments *q, const against_run *now, bench_result *least, bench_text *text, against_found *found)
+{
+    result done = against_tell(&q->against, now, &a->report, text, found);
+    for (int runs = 1; done == RESULT_OK && found->slower && runs < AGAINST_RUNS; ++runs) {
+        bench_result again;
+        memory_free(a->memory, text->bytes, text->size + 1, 1);
+        report_note(&a->report, "%u times seem slower: measured again", found->slower);
+        done = bench_run(now->bench, &a->report, &again);
+        if (done != RESULT_OK) return done;
+        against_fold(least, &again);
+        bench_result_free(&again);
+        done = against_tell(&q->against, now, &a->report, text, found);
+    }
+    return done;
+}
+
+static result tell_against(app *a, const arguments *q, const against_run *now, bench_result *least, uint32_t *failed)
+{
+    bench_text text;
+    against_found found = {0};
+    const result done = compare_again(a, q, now, least, &text, &found);
+    if (done != RESULT_OK) return done;
+    fwrite(text.bytes, 1, text.size, is_stdout(q->json) || is_stdout(q->csv) || is_stdout(q->frames) ? stderr : stdout);
+    memory_free(a->memory, text.bytes, text.size + 1, 1);
+    *failed += found.regressions;
+    return RESULT_OK;
+}
+
+static result run_and_tell(app *a, const arguments *q, const bench_request *bench, const bench_labels *labels, uint32_t *failed)
+{
+    bench_result results;
+    result done = bench_run(bench, &a->report, &results);
+    if (done != RESULT_OK && q->images) (void)rmdir(q->images); // leaves it where something is in it
+    if (done != RESULT_OK) return done;
+    const bench_output output = output_of(q, bench, labels);
+    if (bench->shard.count) tell_part(a, bench);
+    else {
+        done = bench_results_write(a->memory, &a->report, &output, &results);
+        *failed = bench_results_tell_failures(&a->report, bench, &results);
+        if (done == RESULT_OK && q->against.path) done = tell_against(a, q, &(against_run){bench, labels, &results}, &results, failed);
+    }
+    bench_result_free(&results);
+    return done;
+}
+
+static result run_traced(app *a, const arguments *q, bench_request *bench, const bench_labels *labels, uint32_t *failed)
+{
+    if (!q->trace) return run_and_tell(a, q, bench, labels, failed);
+    bench->trace = trace_open(a->memory);
+    if (!bench->trace) return report_no_memory(&a->report, NULL);
+    result done = run_and_tell(a, q, bench, labels, failed);
+    if (done == RESULT_OK) done = trace_write(bench->trace, q->trace, &a->report);
+    trace_close(bench->trace);
+    return done;
+}
+
+static result run_shard(app *a, const arguments *q, bench_request *bench, const bench_labels *labels, uint32_t *failed)
+{
+    if (!q->shard.count) return run_traced(a, q, bench, labels, failed);
+    char *identity = shard_identity(bench, labels);
+    if (!identity) return report_no_memory(&a->report, NULL);
+    bench->shard.identity = identity;
+    const result done = run_traced(a, q, bench, labels, failed);
+    memory_free(a->memory, identity, strlen(identity) + 1, 1);
+    return done;
+}
+
 static result run_bench(app *a, const arguments *q, const camera_path *path, uint32_t *failed)
 {
     bench_strategy_request strategies[STRATEGIES_MOST];
@@ -229,29 +341,24 @@ static result run_bench(app *a, const arguments *q, const camera_path *path, uin
     if (done != RESULT_OK) return done;
     if (q->images && mkdir(q->images, 0777) != 0 && errno != EEXIST)
         return report_error(&a->report, q->images, 0, "cannot make the folder: %s", strerror(errno));
-    const bench_request bench = {.scene = a->scene, .path = path, .strategies = strategies, .doors = app_doors_of(&q->doors),
-                                 .plugins = a->plugins, .services = &a->services,
-                                 .strategy_count = count, .width_px = q->size.width_px, .height_px = q->size.height_px, .repeat = q->repeat,
-                                 .query_latency = q->latency, .samples = q->samples, .truth = q->truth, .ids = q->ids, .pictures = q->pictures,
-                                 .frame_ms = q->frame_ms, .images = q->images};
+    bench_request bench = {.scene = a->scene, .path = path, .strategies = strategies, .doors = app_doors_of(&q->doors),
+                           .plugins = a->plugins, .services = &a->services,
+                           .strategy_count = count, .width_px = q->size.width_px, .height_px = q->size.height_px, .repeat = q->repeat,
+                           .query_latency = q->latency, .samples = q->samples, .truth = q->truth, .ids = q->ids, .pictures = q->pictures,
+                           .frame_ms = q->frame_ms, .images = q->images, .costs = q->costs, .times = q->times, .shard = q->shard};
     const bench_labels labels = {scene_label(q->scene, &a->texts), path->name};
     if (!labels.scene) return report_no_memory(&a->report, NULL);
-    bench_result results;
-    done = bench_run(&bench, &a->report, &results);
-    if (done != RESULT_OK && q->images) (void)rmdir(q->images); // leaves it where something is in it
-    if (done != RESULT_OK) return done;
-    done = write_results(a, &(output){&bench, &labels, q->json, q->csv}, &results);
-    *failed = tell_failures(a, q, &results);
-    bench_result_free(&results);
-    return done;
+    return run_shard(a, q, &bench, &labels, failed);
 }
 
 // What can be known before the scene is read is told before it.
 static result check_early(app *a, const arguments *q)
 {
+    const bench_output output = output_of(q, NULL, NULL);
     result done = chains_check(a, q->cullers, q->culler_count, &q->zones);
-    if (done == RESULT_OK && q->json && !is_stdout(q->json)) done = file_can_write(q->json, &a->report);
-    if (done == RESULT_OK && q->csv && !is_stdout(q->csv)) done = file_can_write(q->csv, &a->report);
+    if (done == RESULT_OK) done = q->shard.count ? file_can_write(q->part, &a->report) : bench_results_check(&a->report, &output);
+    if (done == RESULT_OK && q->against.path) done = against_check(&q->against, &a->report);
+    if (done == RESULT_OK && q->trace) done = file_can_write(q->trace, &a->report);
     return done;
 }
 
@@ -259,7 +366,7 @@ int command_bench(int argc, char **argv)
 {
     static const struct argp parser = {options, parse, "SCENE", "Measures strategies on a scene and camera path against the truth.",
                                        NULL,    NULL,  NULL};
-    arguments q = {.repeat = 3, .samples = 1, .size = {1280, 720}, .truth = BENCH_TRUTH, .ids = BENCH_RUNS};
+    arguments q = {.repeat = 3, .samples = 1, .size = {1280, 720}, .truth = BENCH_TRUTH, .ids = BENCH_RUNS, .against = {.least_percent = 10}};
     if (argp_parse(&parser, argc, argv, 0, NULL, &q) != 0) return EXIT_USAGE;
     app a;
     camera_path path = {0};

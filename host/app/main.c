@@ -23,10 +23,16 @@ static const command commands[] = {
     {"info", "portcullis info", "what a scene holds", command_info},
     {"compile", "portcullis compile", "brushes to zones joined by portals: a scene file", command_compile},
     {"bench", "portcullis bench", "measure cullers on a scene and camera path against the truth", command_bench},
+    {"merge", "portcullis merge", "put the parts of a sharded bench together", command_merge},
     {"render", "portcullis render", "draw one view to a PNG", command_render},
     {"explain", "portcullis explain", "why one item was drawn or not in one view", command_explain},
+    {"first-miss", "portcullis first-miss", "the first wrong pixel of a path: where, why, a picture, and how to see it again", command_first_miss},
+    {"auto", "portcullis auto", "measure chains and give each zone the cheapest exact one", command_auto},
+    {"stress", "portcullis stress", "where cullers first differ on the scene moved, scaled, turned, jittered, doubled", command_stress},
     {"view", "portcullis view", "fly through a scene in a window", command_view},
     {"generate", "portcullis generate", "write a seeded scene: city, swarm, rooms, demo", command_generate},
+    {"check", "portcullis check", "try a culler against the contract", command_check},
+    {"new-culler", "portcullis new-culler", "write a whole project for a culler of your own", command_new_culler},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 

@@ -3,6 +3,7 @@
 #define _GNU_SOURCE
 #include "loader.h"
 #include "builtin.h"
+#include "library_file.h"
 
 #include <dirent.h>
 #include <dlfcn.h>
@@ -137,13 +138,11 @@ static const char *plugin_fault(const loader *l, const cull_plugin *p)
     return plugin_known(l, p->descriptor->id) ? "its id is taken by a culler found before it" : NULL;
 }
 
-static const char *entry_fault(const loader *l, const cull_entry_v0 *entry, char *text, size_t size)
+static const char *entry_fault(const loader *l, const cull_entry_v0 *entry, library_fault_text *text)
 {
     if (!entry) return "it has no symbol " CULL_ENTRY_SYMBOL "; declare it with CULL_ENTRY";
-    if (entry->abi != CULL_ABI) { // the one field that every ABI has
-        snprintf(text, size, "it is of ABI number %u, this host of %u; build it against this host's culler.h", entry->abi, CULL_ABI);
-        return text;
-    }
+    const char *other_abi = library_abi_fault(entry->abi, text); // the one field that every ABI has
+    if (other_abi) return other_abi;
     if (entry->plugin_count == 0 || entry->plugin_count > PLUGINS_A_LIBRARY_MOST || !entry->plugins) return "it lists no plugin, or over 64";
     for (uint32_t i = 0; i < entry->plugin_count; ++i) {
         const char *fault = plugin_fault(l, entry->plugins[i]);
@@ -202,15 +201,17 @@ static result library_open(loader *l, const char *path)
         if (file_seen(l, &status)) return RESULT_OK;
         if (!buffer_append(&l->looked_at, &(file_id){status.st_dev, status.st_ino}, 1)) return RESULT_NO_MEMORY;
     }
+    library_fault_text text;
+    const char *fault = library_path_fault(path, &text);
+    if (fault) return refuse(l, path, fault);
     dlerror();
     void *handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (!handle) {
         const char *reason = dlerror();
         return refuse(l, path, reason ? reason : "the system cannot load it");
     }
-    char text[256];
     const cull_entry_v0 *entry = dlsym(handle, CULL_ENTRY_SYMBOL);
-    const char *fault = entry_fault(l, entry, text, sizeof text);
+    fault = entry_fault(l, entry, &text);
     if (!fault) return library_keep(l, handle, path, entry);
     const result refused = refuse(l, path, fault);
     library_close(handle);

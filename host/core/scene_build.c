@@ -215,6 +215,14 @@ static uint32_t flags_of_material(uint32_t material_flags)
     return 0;
 }
 
+// An item whose surface is its box is one no longer when the axes are no axes any more.
+static uint32_t flags_turned(const scene_builder *b, uint32_t flags)
+{
+    uint32_t others = 0;
+    for (int i = 0; i < 9 && b->map.is_on; ++i) others += b->map.turn[i] != 0;
+    return others > 3 ? flags & ~(uint32_t)CULL_ITEM_BOX : flags;
+}
+
 static result stream_item(scene_builder *b, builder_stream *s, const builder_item *item)
 {
     if (item_is_sound(b, item) != RESULT_OK) return RESULT_BAD_INPUT;
@@ -227,7 +235,7 @@ static result stream_item(scene_builder *b, builder_stream *s, const builder_ite
     for (uint32_t i = 0; i < item->polygon_count; ++i) triangles[i] = item->polygon_triangles ? item->polygon_triangles[i] : 1;
     const scene_material *materials = b->materials.items;
     *out = (scene_item){first_index, item->index_count, first_polygon, item->polygon_count, item->material, item->object,
-                        item->flags | flags_of_material(materials[item->material].flags)};
+                        flags_turned(b, item->flags) | flags_of_material(materials[item->material].flags)};
     return RESULT_OK;
 }
 

@@ -8,6 +8,9 @@
 #include "chain.h"
 #include "view.h"
 
+// What begins or has ended in a frame, for who draws up where its time went.
+typedef enum frame_mark { FRAME_FLOW_BEGINS, FRAME_FLOW_ENDED, FRAME_STEP_BEGINS, FRAME_STEP_ENDED } frame_mark;
+
 typedef enum collect_how { COLLECT_WHAT_IS_READY, COLLECT_EVERYTHING } collect_how;
 
 // What carries out batches. Functions may be NULL; without `test` every test counts as seen, without `capture` no slot
@@ -25,6 +28,8 @@ typedef struct frame_driver {
     void (*draw_clipped)(void *user, uint32_t zone, const cull_clipped *clipped, uint32_t count);
     // Before the zone's first step and after its captures: to 0 which slots hold no picture, or none any more. Its time is the frame's.
     void (*check_slots)(void *user, uint32_t zone, uint8_t *slots, uint32_t count);
+    // Its time is the frame's: for no frame that is measured. zone: that steps; of FRAME_FLOW_ENDED: how many zones are reached.
+    void (*mark)(void *user, frame_mark mark, uint32_t zone);
 } frame_driver;
 
 typedef struct frame_input {

@@ -95,10 +95,18 @@ int world_view_is_by_entry(void *user, uint32_t zone)
 
 // ---- Beginning ----
 
+static void mark(const world_view *v, frame_mark what, uint32_t zone)
+{
+    const frame_driver *d = &v->frame.input->driver;
+    if (d->mark) d->mark(d->user, what, zone);
+}
+
 static void run_flow(world_view *v, const frame_input *q)
 {
     const flow_request request = {.camera = q->camera, .frame = q->frame, .open = v->open, .crosser = {v, world_view_cross, world_view_sight, world_view_is_by_entry}};
+    mark(v, FRAME_FLOW_BEGINS, 0);
     flow_run(v->flow, &request, &v->reached);
+    mark(v, FRAME_FLOW_ENDED, v->reached.zone_count);
     v->stats->zones = v->reached.zone_count;
     v->stats->volumes = v->reached.volume_count;
     v->stats->crossings = v->reached.crossings;
@@ -182,7 +190,9 @@ static void run_rounds(world_view *v, viewer *const *zones, uint32_t count)
     while (left) {
         int has_work = 0;
         for (uint32_t i = 0; i < left; ++i) {
+            mark(v, FRAME_STEP_BEGINS, zones[i]->chain->data->index);
             viewer_step(zones[i], &v->frame);
+            mark(v, FRAME_STEP_ENDED, zones[i]->chain->data->index);
             has_work |= viewer_has_work(zones[i], &v->frame.input->driver);
         }
         if (has_work) carry_out(v, zones, left);

@@ -11,8 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { PATH_BYTES = 4096 };
-
 cull_result library_result(result done)
 {
     return done == RESULT_OK ? CULL_OK : done == RESULT_NO_MEMORY ? CULL_ERR_MEMORY : CULL_ERR_ZONE;
@@ -44,24 +42,16 @@ static void tell_log(void *user, report_level level, const char *text)
 // Beside this library, as installed and as built; where it is linked into the executable, beside that.
 static void add_beside_library(cull_scene *s, search_path *p)
 {
-    static const char *const places[] = {"portcullis", "../lib/portcullis", "../plugins"};
     static const char here = 0; // an object of this library, to ask where it was loaded from
     Dl_info info;
-    char path[PATH_BYTES];
-    if (!dladdr(&here, &info) || !info.dli_fname) return;
-    const char *slash = strrchr(info.dli_fname, '/');
-    if (!slash) return; // found by a bare name: no folder to go by
-    for (size_t i = 0; i < sizeof places / sizeof *places; ++i) {
-        const int length = snprintf(path, sizeof path, "%.*s/%s", (int)(slash - info.dli_fname), info.dli_fname, places[i]);
-        if (length > 0 && (size_t)length < sizeof path) search_path_add(p, arena_text(&s->texts, path, (size_t)length));
-    }
+    if (dladdr(&here, &info) && info.dli_fname) search_path_add_beside(p, SEARCH_BESIDE_LIBRARY, info.dli_fname, &s->texts);
 }
 
 static result open_plugins(cull_scene *s, const cull_scene_options *o)
 {
     search_path p = {0};
-    for (uint32_t i = 0; i < o->plugin_folder_count; ++i) search_path_add(&p, o->plugin_folders[i]);
-    search_path_add_variable(&p, &s->texts);
+    for (uint32_t i = 0; i < o->plugin_folder_count; ++i) search_path_add(&p, o->plugin_folders[i], SEARCH_APPLICATION);
+    search_path_add_environment(&p, &s->texts);
     add_beside_library(s, &p);
     const loader_options options = {.folders = p.folders, .folder_count = p.count};
     return loader_open(&options, s->memory, &s->report, &s->plugins);

@@ -123,6 +123,7 @@ void renderer_capture(renderer *g, render_layout *l, uint32_t zone, const cull_c
     picture_slot *s = slot_find(l, zone, capture->slot);
     if (!s) return;
     frame_flush(g);
+    if (s->waits_in == g->frame.number) shown_draw(g); // as it was when it was shown
     s->filled = 0;
     for (uint32_t i = 0; i < capture->slot_count; ++i) { // what it is composed of is not what it takes the place of
         picture_slot *part = slot_find(l, zone, capture->slots[i]);

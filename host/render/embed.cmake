@@ -1,5 +1,5 @@
 # Turns text files into one C header of byte arrays: cmake -DOUT=file -DIN="a;b" -P embed.cmake
-set(text "// Made by embed.cmake from shaders/. Not for editing.\n")
+set(text "// Made by embed.cmake. Not for editing.\n")
 foreach(file IN LISTS IN)
   get_filename_component(name ${file} NAME)
   string(REPLACE "." "_" name ${name})

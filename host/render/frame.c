@@ -83,7 +83,7 @@ result renderer_begin(renderer *g, const frame_request *q, report *r)
     if (!f->target || (q->mode == RENDER_OVERDRAW && !f->layers)) return RESULT_NO_GL;
     f->request = *q;
     f->request.camera = NULL; // the caller's, and maybe gone before the frame is
-    f->draw_calls = f->state_changes = f->translucent_count = f->may_repeat = 0;
+    f->draw_calls = f->state_changes = f->translucent_count = f->shown_count = f->may_repeat = 0;
     f->open = 1;
     f->number++;
     bind_blocks(g);
@@ -111,6 +111,7 @@ void renderer_end(renderer *g)
 {
     assert(g->frame.open);
     frame_flush(g);
+    shown_draw(g);
     translucent_draw(g);
     if (g->frame.request.mode == RENDER_OVERDRAW) draw_heat(g);
     if (g->frame.request.mode == RENDER_IDS) g->id_target = g->frame.target;

@@ -320,6 +320,12 @@ typedef struct translucent_item {
     uint32_t zone, rank;  // or LAYOUT_MOVERS; rank: what has a lower one is drawn before, whatever the distance
 } translucent_item;
 
+typedef struct shown_picture { // with what it was asked to be shown as
+    picture_slot *slot;
+    double place[3][3];
+    pixel_box cut;
+} shown_picture;
+
 typedef struct frame_state {
     viewpoint view;
     target *target;    // colours, in the end
@@ -329,7 +335,8 @@ typedef struct frame_state {
     pixel_box pending_cut;
     zone_cut *cuts; // by zone
     translucent_item *translucent;
-    uint32_t cut_capacity, translucent_count, translucent_capacity;
+    shown_picture *shown; // that wait for the frame's end
+    uint32_t cut_capacity, translucent_count, translucent_capacity, shown_count, shown_capacity;
     uint32_t number; // of this frame
     uint32_t draw_calls, state_changes;
     uint32_t open; // between begin and end
@@ -379,6 +386,7 @@ struct picture_slot {
     uint64_t bytes; // of its textures
     double corner[3], right[3], up[3], eye[3]; // that it was taken through and from, relative to the scene's origin
     double shown[3][3];                        // corner, right and up that it is shown as
+    uint32_t waits_in;                         // number of the frame whose end it last waited for, to be shown
     double near_fraction; // distance of depth 1, in units of the parallelogram's
     uint32_t outline;              // its place among the outlines, from 1; 0: it has none
     uint32_t strips, strip_texels; // that its outline tells of, and columns of each; 0: not traced, shown whole
@@ -407,6 +415,9 @@ void slot_empty(renderer *g, picture_slot *s); // and its memory given back
 void picture_as_taken(picture_slot *s); // is how it is shown from now on
 void picture_set3(double out[3], cull_vec3 v, const double offset[3]);
 void picture_draw(renderer *g, const picture_slot *s, const viewpoint *v); // into what is bound
+result shown_reserve(renderer *g, uint32_t slots); // room for so many pictures in a frame; nothing changes on failure
+void shown_release(renderer *g);
+void shown_draw(renderer *g); // those that wait
 
 // Outlines (picture_outline.c)
 void outline_want(renderer *g, picture_slot *s);  // of what was just taken

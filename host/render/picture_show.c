@@ -1,11 +1,13 @@
 // Pictures shown: the parallelogram that a slot was taken through, or one that is said, from where the frame's eye is now.
 // SPDX-License-Identifier: MIT
 // Invariant: a picture without depth stands behind all that has depth, and in front of those shown after it; a slot that holds nothing
-// draws the items.
+// draws the items. All wait for the frame's end: a picture is right to its tolerance only, and a box test that saw one's depth could call
+// hidden what shows a pixel.
 #include "gl.h"
 
 #include <assert.h>
 #include <math.h>
+#include <string.h>
 
 // ---- Drawing ----
 
@@ -137,6 +139,55 @@ static int wants_geometry(const renderer *g)
     return g->frame.request.mode == RENDER_OVERDRAW || g->frame.request.mode == RENDER_IDS;
 }
 
+result shown_reserve(renderer *g, uint32_t slots)
+{
+    frame_state *f = &g->frame;
+    if (slots <= f->shown_capacity) return RESULT_OK;
+    shown_picture *shown = memory_alloc(g->memory, slots, sizeof *shown);
+    if (!shown) return RESULT_NO_MEMORY;
+    shown_release(g);
+    f->shown = shown;
+    f->shown_capacity = slots;
+    return RESULT_OK;
+}
+
+void shown_release(renderer *g)
+{
+    frame_state *f = &g->frame;
+    memory_free(g->memory, f->shown, f->shown_capacity, sizeof *f->shown);
+    f->shown = NULL;
+    f->shown_count = f->shown_capacity = 0;
+}
+
+void shown_draw(renderer *g)
+{
+    frame_state *f = &g->frame;
+    if (f->shown_count == 0) return;
+    frame_flush(g);
+    frame_bind(g);
+    outlines_trace(g);
+    for (uint32_t i = 0; i < f->shown_count; ++i) {
+        const shown_picture *p = &f->shown[i];
+        memcpy(p->slot->shown, p->place, sizeof p->place);
+        cut_begin(g, &p->cut);
+        picture_draw(g, p->slot, &f->view);
+        cut_end(g, &p->cut);
+    }
+    f->shown_count = 0;
+    gl_check(g, NULL, "showing pictures");
+}
+
+// Of a frame that shows more than there are slots, some twice, what waits is drawn early.
+static void put_shown(renderer *g, uint32_t zone, picture_slot *s)
+{
+    frame_state *f = &g->frame;
+    if (f->shown_count == f->shown_capacity) shown_draw(g);
+    shown_picture *p = &f->shown[f->shown_count++];
+    *p = (shown_picture){.slot = s, .cut = frame_cut(g, zone)};
+    memcpy(p->place, s->shown, sizeof p->place);
+    s->waits_in = s->used = f->number;
+}
+
 void renderer_show(renderer *g, render_layout *l, uint32_t zone, const cull_picture *picture)
 {
     assert(zone < l->zone_count);
@@ -147,17 +198,9 @@ void renderer_show(renderer *g, render_layout *l, uint32_t zone, const cull_pict
         renderer_draw(g, l, zone, picture->runs, picture->run_count);
         return;
     }
-    const pixel_box cut = frame_cut(g, zone);
-    frame_flush(g);
-    frame_bind(g);
-    outlines_trace(g);
     place(g, zone, picture, s);
-    cut_begin(g, &cut);
-    picture_draw(g, s, &g->frame.view);
-    cut_end(g, &cut);
-    s->used = g->frame.number;
+    put_shown(g, zone, s);
     l->pictures.shown++;
     l->pictures.pixels_shown += area_px(g, s);
     translucent_note(g, &(layout_runs){l, zone, picture->runs, picture->run_count}); // what is translucent is in no picture
-    gl_check(g, NULL, "showing a picture");
 }

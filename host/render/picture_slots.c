@@ -162,7 +162,7 @@ result render_layout_slots(render_layout *l, const uint32_t *slot_counts, report
     for (uint32_t zone = 0; zone < l->zone_count; ++zone) total += slot_counts[zone];
     if (total > SLOTS_MOST) return report_error(r, NULL, 0, "cullers ask for %llu pictures; %u is the most", (unsigned long long)total, (unsigned)SLOTS_MOST);
     picture_slot *slots = total ? memory_alloc_zeroed(g->memory, (size_t)total, sizeof *slots) : NULL;
-    if (total && !slots) {
+    if (total && (!slots || shown_reserve(g, (uint32_t)total) != RESULT_OK)) {
         memory_free(g->memory, slots, (size_t)total, sizeof *slots);
         return report_no_memory(r, NULL);
     }
@@ -208,5 +208,6 @@ void pictures_close(renderer *g)
     glDeleteVertexArrays(1, &g->pictures.vertices);
     glDeleteTextures(1, &g->pictures.spare_depth);
     outlines_close(g);
+    shown_release(g);
     g->pictures = (picture_shared){0};
 }

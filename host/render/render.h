@@ -101,6 +101,7 @@ void renderer_zone_rectangle(renderer *g, uint32_t zone, const float rectangle[4
 void renderer_end(renderer *g);    // translucent items of all runs drawn, then glFinish
 uint32_t renderer_draw_calls(const renderer *g);   // since renderer_begin
 uint32_t renderer_state_changes(const renderer *g);
+void renderer_forget_state(renderer *g); // the next frame sets all of it, whatever was drawn before: then its state changes are its own
 result renderer_read(renderer *g, uint8_t *rgba, report *r); // width * height * 4, top row first, after renderer_end
 // The same frame's depths: 0 where nothing opaque and no picture of a culler was drawn. width * height, bottom row first.
 result renderer_read_depths(renderer *g, float *depths, report *r);
@@ -111,8 +112,8 @@ result renderer_read_ids(renderer *g, uint32_t *triangles, float *depths, report
 
 // ---- What cullers ask for ----
 
-// Inside a frame. Issues box tests against the depth drawn so far; the boxes are the plugin's, relative to the zone's
-// origin, widened here. At the near plane: seen.
+// Inside a frame. Issues box tests against the depth of what was drawn so far, which no picture is part of: these are right to their
+// tolerance only. The boxes are the plugin's, relative to the zone's origin, widened here. At the near plane: seen.
 void renderer_test(renderer *g, const render_layout *l, uint32_t zone, const cull_test *tests, uint32_t count, uint32_t frame);
 typedef enum collect { COLLECT_READY, COLLECT_ALL } collect; // ALL waits
 typedef struct collect_request { const render_layout *layout; uint32_t zone, frame; collect how; } collect_request;
@@ -160,6 +161,7 @@ result render_layout_slots(render_layout *l, const uint32_t *slot_counts, report
 // called: captures draw every triangle. RESULT_NO_MEMORY: they do, too.
 result render_layout_levels(render_layout *l, report *r, cull_costs *out);
 void renderer_capture(renderer *g, render_layout *l, uint32_t zone, const cull_capture *capture);
+// Drawn at renderer_end, in the order of the calls; a slot that is captured again before that is drawn then, and box tests see it.
 // What a picture shows goes on for half a pixel beyond its outline where nothing else stands in the end: an outline that errs by less leaves
 // no gap.
 void renderer_show(renderer *g, render_layout *l, uint32_t zone, const cull_picture *picture);

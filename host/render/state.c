@@ -7,6 +7,11 @@ void state_forget(renderer *g)
     g->state = (gl_state){0};
 }
 
+void renderer_forget_state(renderer *g)
+{
+    state_forget(g);
+}
+
 void state_program(renderer *g, GLuint program)
 {
     if (g->state.program == program && program) return;

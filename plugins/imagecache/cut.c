@@ -66,10 +66,20 @@ static spot spot_of(const double eye[3], const cull_box *box)
     return s;
 }
 
+// Across the view's direction a sphere beside it is drawn out, seen from its middle: with its radius r and its way off the axis t, in depths of the middle,
+// to r (1 + t) / (1 - r), which QUAD_WIDEST bounds.
+static int can_be_aligned(const cut_request *q, const spot *s, double around)
+{
+    const double depth = bound_dot(s->from_eye, q->forward), square = s->distance * s->distance - depth * depth;
+    const double aside = square > 0 ? sqrt(square) : 0;
+    return depth - around > 2 * q->optics.near_distance && around * (2 * depth + aside) < depth * depth;
+}
+
 // A sphere around it is seen within 40 degrees of its middle, and its texels are far coarser than floats.
 static int can_be_taken(const cut_request *q, const spot *s)
 {
     const double around = s->radius + 1.5 * cut_delta(s->distance, q->optics.pixels_per_tangent, q->tolerance_px);
+    if (q->planes == CUT_ALIGNED && !can_be_aligned(q, s, around)) return 0;
     return s->distance > 1.6 * around && s->distance - around > 2 * q->optics.near_distance &&
            s->distance - around > FLOATS_PER_TEXEL * 1.5 * (q->radius + s->distance) * q->optics.pixels_per_tangent;
 }
@@ -112,18 +122,34 @@ static double showing_price(const cut_request *q, const spot *s)
     return q->costs->picture_ns + shown * q->picture_pixel_ns;
 }
 
-static double picture_price(const cut_request *q, const lists_node *node, const spot *s)
+static double taking_price(const cut_request *q, const lists_node *node, const spot *s)
 {
     const cull_costs *c = q->costs;
-    const double pixels = pixels_of(q, s);
-    const double taking = c->capture_ns + node->polygon_count * c->polygon_ns + pixels * (c->capture_pixel_ns + COVERED * c->pixel_ns);
-    return showing_price(q, s) + taking / frames_of(q, s);
+    return c->capture_ns + node->polygon_count * c->polygon_ns + pixels_of(q, s) * (c->capture_pixel_ns + COVERED * c->pixel_ns);
+}
+
+static double picture_price(const cut_request *q, const lists_node *node, const spot *s)
+{
+    const double frames = q->wear > 0 ? frames_of(q, s) / q->wear : frames_of(q, s);
+    return showing_price(q, s) + taking_price(q, node, s) / (frames > 1 ? frames : 1);
+}
+
+cut_price cut_price_of(const cut_request *q, const lists_node *node)
+{
+    const spot s = spot_of(q->eye, &node->box);
+    return (cut_price){showing_price(q, &s), taking_price(q, node, &s), frames_of(q, &s)};
 }
 
 static double geometry_price(const cut_request *q, const lists_node *node, const spot *s)
 {
     const double pixels = pixels_of(q, s), shown = pixels < q->optics.pixels ? pixels : q->optics.pixels;
-    return node->polygon_count * q->costs->polygon_ns + COVERED * shown * q->costs->pixel_ns;
+    return (double)node->polygon_share * q->costs->polygon_ns + COVERED * shown * q->costs->pixel_ns;
+}
+
+double cut_geometry_ns(const cut_request *q, const lists_node *cell)
+{
+    const spot s = spot_of(q->eye, &cell->box);
+    return geometry_price(q, cell, &s);
 }
 
 // ---- The tree, from the cells up ----

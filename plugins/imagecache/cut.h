@@ -25,9 +25,12 @@ typedef struct cut_request {
     cut_optics optics;
     double tolerance_px;
     double picture_pixel_ns; // with depth or without
+    double wear;             // how many times sooner pictures have to be taken anew than the bound foretells; 0: as foretold
     ground_cell eye_cell;
     enum { CUT_TREE, CUT_CELLS } nodes; // CELLS: no node but the cells
     enum { CUT_ANEW, CUT_GOES_ON } history;
+    enum { CUT_FACING, CUT_ALIGNED } planes; // pictures lie across the line of sight to their middles, or all across the view's
+    double forward[3];                       // the view's; of CUT_ALIGNED
     const looks *looks; // NULL: nobody looks what is hidden. It says nothing about prices: choices would come and go with it
 } cut_request;
 
@@ -63,6 +66,11 @@ static inline int32_t cut_ring(ground_cell eye, int32_t i, int32_t j)
 
 // Metres that clip planes move out by at a distance, so that no seam opens; see quad_seam_delta.
 double cut_delta(double distance, double pixels_per_tangent, double tolerance_px);
+
+// What one node as a picture comes to: showing it and taking it, and how many frames it is foretold to last if the eye goes straight on.
+typedef struct cut_price { double showing_ns, taking_ns, frames; } cut_price;
+cut_price cut_price_of(const cut_request *q, const lists_node *node);
+double cut_geometry_ns(const cut_request *q, const lists_node *cell); // what a cell takes as geometry
 
 // Distance and half diagonal under which a picture can be taken at all, see QUAD_WIDEST and the rest of quad_result.
 int cut_can_be_taken(const cut_request *q, const cull_box *box);

@@ -11,7 +11,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { FIGURE_COUNT = 17, FIGURES_BUILT = 5 }; // the others change when a query closes
+enum { FIGURE_COUNT = 18, FIGURES_BUILT = 5 }; // the others change when a query closes
 
 struct cull_culler {
     const cull_host *host;
@@ -76,7 +76,7 @@ static int make_figures(cull_culler *c)
         {"pictures_early", 0, CULL_FIGURE_SUM, 0},              {"pictures_stale", 0, CULL_FIGURE_SUM, 0},
         {"nodes_tested", 0, CULL_FIGURE_SUM, 0},                {"nodes_hidden", 0, CULL_FIGURE_SUM, 0},
         {"pictures_evicted", 0, CULL_FIGURE_SUM, 0},            {"polygons_taken", 0, CULL_FIGURE_SUM, 0},
-        {"polygons_spared", 0, CULL_FIGURE_SUM, 0},
+        {"polygons_spared", 0, CULL_FIGURE_SUM, 0},             {"frames_handed_back", 0, CULL_FIGURE_SUM, 0},
         {"error_px_most", 0, CULL_FIGURE_MAX, 0},
     };
     c->figures = c->host->alloc(c->host, sizeof figures, _Alignof(cull_figure));
@@ -90,7 +90,7 @@ static void add_counts(cull_figure *figures, const show_counts *n)
 {
     const double values[FIGURE_COUNT - FIGURES_BUILT - 1] = {(double)n->frames, (double)n->geometry_frames, (double)n->pictures, (double)n->captures,
                                                              (double)n->early,  (double)n->stale,           (double)n->tests,    (double)n->hidden,
-                                                             (double)n->evicted, n->polygons, n->spared};
+                                                             (double)n->evicted, n->polygons, n->spared, (double)n->handed_back};
     cull_figure *const most = &figures[FIGURE_COUNT - 1];
     for (int i = 0; i < FIGURE_COUNT - FIGURES_BUILT - 1; i++) figures[FIGURES_BUILT + i].value += values[i];
     if (n->error_px > most->value) most->value = n->error_px;

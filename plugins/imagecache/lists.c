@@ -14,6 +14,7 @@ typedef struct builder {
     lists *out;
     size_t room;        // runs that out->runs has room for
     cull_run *spare[2]; // each room for as many runs as all cells have
+    uint32_t *listed;   // by place: cells that list it
 } builder;
 
 // Room for `more` runs behind those there are.
@@ -43,6 +44,24 @@ static void count_items(builder *b, lists_node *node)
     }
 }
 
+static void share_items(const builder *b, lists_node *node)
+{
+    double share = 0;
+    for (uint32_t r = node->first_run; r < node->first_run + node->run_count; r++) {
+        const cull_run run = b->out->runs[r];
+        for (uint32_t p = run.first; p < run.first + run.count; p++) share += (double)b->zone->items[b->cells->order[p]].polygon_count / b->listed[p];
+    }
+    node->polygon_share = (float)share;
+}
+
+static void count_cells(builder *b)
+{
+    const cells *c = b->cells;
+    memset(b->listed, 0, c->item_count * sizeof *b->listed);
+    for (uint32_t r = 0; r < c->run_count; r++)
+        for (uint32_t p = c->runs[r].first; p < c->runs[r].first + c->runs[r].count; p++) b->listed[p]++;
+}
+
 // Runs of two homes may touch in a cell; in a node they are one.
 static int list_cell(builder *b, uint32_t cell, lists_node *node)
 {
@@ -59,6 +78,7 @@ static int list_cell(builder *b, uint32_t cell, lists_node *node)
     }
     node->run_count = l->run_count - node->first_run;
     count_items(b, node);
+    share_items(b, node);
     return 1;
 }
 
@@ -115,14 +135,18 @@ cull_result lists_build(const cull_host *host, const cull_zone *zone, const cell
     out->node_bytes = out->node_count * sizeof *out->nodes;
     out->nodes = host->alloc(host, out->node_bytes, _Alignof(lists_node));
     b.spare[0] = host->alloc(host, spare_bytes, _Alignof(cull_run));
-    int is_done = out->nodes && b.spare[0];
+    const size_t listed_bytes = (c->item_count + (size_t)1) * sizeof *b.listed;
+    b.listed = host->alloc(host, listed_bytes, _Alignof(uint32_t));
+    int is_done = out->nodes && b.spare[0] && b.listed;
     if (is_done) {
         b.spare[1] = b.spare[0] + c->run_count + 1;
         memset(out->nodes, 0, out->node_bytes);
         for (uint32_t n = 0; n < out->node_count; n++) out->nodes[n].box = cull_box_none();
+        count_cells(&b);
         is_done = list_all(&b);
     }
     if (b.spare[0]) host->free(host, b.spare[0], spare_bytes);
+    if (b.listed) host->free(host, b.listed, listed_bytes);
     if (is_done) return CULL_OK;
     lists_free(host, out);
     return CULL_ERR_MEMORY;

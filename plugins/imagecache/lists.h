@@ -13,6 +13,7 @@ typedef struct lists_node {
     cull_box box;
     uint32_t first_run, run_count; // in lists.runs
     uint32_t item_count, polygon_count;
+    float polygon_share; // of a cell: an item's polygons shared evenly by the cells that list it, so that cells in view add up to what is drawn; 0 of others
 } lists_node;
 
 typedef struct lists {

@@ -7,6 +7,7 @@
 
 enum { REST_AFTER = 30, REST_LOOK = 15 }; // frames
 #define SPEED_KEPT 0.9       // of the speed, a frame: who stops goes on
+#define TEST_SHARE 0.3       // of a small picture's cost that a box tested takes, about
 #define FIRST_SPEED 0.0025   // of a cell's side, a frame: before two eyes are known
 
 cull_result show_build(const cull_host *host, const cull_zone *zone, const cells *c, const show_options *options, show_culler *out)
@@ -48,6 +49,7 @@ int show_open(const cull_host *host, const cells *c, const show_culler *s, show 
 {
     memset(out, 0, sizeof *out);
     out->culler = s;
+    account_open(&out->account);
     if (!s->costs) return 1;
     return cut_open(host, c, &s->lists, &out->cut) &&
            shots_open(host, c, &s->lists, s->options.show == SHOW_CENTRED ? SHOTS_CENTRED : SHOTS_QUADS, &out->shots) && looks_open(host, &s->lists, &out->looks) &&
@@ -88,11 +90,13 @@ static cut_request request_of(const show *s, const show_frame *f)
     const show_culler *c = s->culler;
     const cull_view *view = f->visit->view;
     cut_request q = {.inview = f->inview, .costs = c->costs, .speed = s->speed, .radius = c->radius, .tolerance_px = c->options.tolerance_px,
-                     .picture_pixel_ns = c->keep_depth ? c->costs->picture_depth_pixel_ns : c->costs->picture_pixel_ns, .eye_cell = f->eye,
+                     .picture_pixel_ns = c->keep_depth ? c->costs->picture_depth_pixel_ns : c->costs->picture_pixel_ns, .wear = s->account.wear, .eye_cell = f->eye,
                      .nodes = c->options.nodes == SHOW_TREE ? CUT_TREE : CUT_CELLS,
                      .history = s->history == SHOW_GOES_ON ? CUT_GOES_ON : CUT_ANEW,
                      .looks = c->options.hidden == SHOW_HIDDEN_TESTED && f->visit->may_step ? &s->looks : NULL};
     q.optics = (cut_optics){(double)view->pixels_per_tangent, (double)view->near_distance, (double)view->width_px * view->height_px};
+    q.planes = c->options.show == SHOW_CENTRED ? CUT_ALIGNED : CUT_FACING;
+    for (int k = 0; k < 3; k++) q.forward[k] = view->forward[k];
     memcpy(q.eye, s->eye, sizeof q.eye);
     memcpy(q.step, s->step, sizeof q.step);
     return q;
@@ -110,7 +114,8 @@ int show_plan(show *s, const show_frame *f)
     looks_begin(&s->looks);
     s->counts.frames++;
     s->last = SHOW_ALL_GEOMETRY;
-    if (!rests(s)) {
+    if (account_rests(&s->account)) s->counts.handed_back++;
+    else if (!rests(s)) {
         s->view = request_of(s, f);
         cut_make(&s->cut, &s->view);
         s->history = SHOW_GOES_ON;
@@ -120,6 +125,7 @@ int show_plan(show *s, const show_frame *f)
             return 1;
         }
     }
+    account_skip(&s->account);
     s->geometry_frames++;
     s->counts.geometry_frames++;
     return 0;
@@ -165,6 +171,35 @@ cull_progress show_geometry(show *s, const show_frame *f, cull_batch *batch)
     return s->looks.asked ? CULL_WAIT : CULL_DONE;
 }
 
+// What geometry beside the pictures took: cells that were hidden were not drawn.
+static double near_ns(const show *s)
+{
+    const inview *v = s->view.inview;
+    const ground *g = &v->cells->ground;
+    double ns = s->cut.ring_ns;
+    for (uint32_t k = 0; s->looks.found && k < v->count; k++) {
+        const ground_cell at = {(int32_t)(v->list[k] % g->columns), (int32_t)(v->list[k] / g->columns)};
+        const uint32_t node = nodes_of_cell(g, at);
+        if (cut_ring(s->view.eye_cell, at.i, at.j) > s->cut.ring || !looks_is_hidden(&s->looks, node)) continue;
+        ns -= cut_geometry_ns(&s->view, &s->culler->lists.nodes[node]);
+    }
+    return ns;
+}
+
+static void keep_account(show *s)
+{
+    account_frame a = {.geometry_ns = s->cut.geometry_ns, .near_ns = near_ns(s), .shown_ns = TEST_SHARE * s->looks.asked * s->culler->costs->picture_ns};
+    for (uint32_t i = 0; i < s->cut.taken_count; i++) {
+        const uint32_t node = s->cut.taken[i];
+        if (looks_is_hidden(&s->looks, node)) continue;
+        const cut_price p = cut_price_of(&s->view, &s->culler->lists.nodes[node]);
+        a.shown_ns += p.showing_ns;
+        a.foretold_ns += p.taking_ns / p.frames;
+        if (s->shots.all[node].frame == s->looks.frame) a.taken_ns += p.taking_ns;
+    }
+    account_add(&s->account, &a);
+}
+
 void show_pictures(show *s, const show_frame *f, cull_batch *batch)
 {
     const shots_request q = shots_of(s, f->visit);
@@ -173,7 +208,8 @@ void show_pictures(show *s, const show_frame *f, cull_batch *batch)
         looks_learn(&s->looks, f->visit);
         seams_draw_rest(&s->seams, &seam, batch);
     }
-    if (!shots_show(&s->shots, &q, batch)) batch->limits_hit++;
+    if (shots_show(&s->shots, &q, batch)) keep_account(s);
+    else batch->limits_hit++;
     show_counts *const n = &s->counts;
     n->hidden += s->looks.found;
     n->pictures += s->shots.shown_count;

@@ -5,6 +5,7 @@
 #ifndef PORTCULLIS_IMAGECACHE_SHOW_H
 #define PORTCULLIS_IMAGECACHE_SHOW_H
 
+#include "account.h"
 #include "cut.h"
 #include "seams.h"
 #include "shots.h"
@@ -36,6 +37,7 @@ void show_tell(const show_culler *s, const cells *c, cull_built *out);
 
 typedef struct show_counts { // of a query's life
     uint64_t frames, geometry_frames; // frames; those in which pictures didn't pay, or could not be taken
+    uint64_t handed_back;             // of these, those of geometry's turn after pictures lost
     uint64_t pictures, captures, early, stale, tests, hidden, evicted;
     double polygons, spared; // of captures: drawn as foretold; left out by coarser levels
     double error_px; // the largest
@@ -43,6 +45,7 @@ typedef struct show_counts { // of a query's life
 
 typedef struct show { // a query's memory
     const show_culler *culler;
+    account account;
     cut cut;
     cut_request view; // of this frame
     shots shots;

@@ -74,6 +74,12 @@ tab="$(printf 'tab\there.json')"
 expect 'a name with a tab' 0 '' "$portcullis" generate maze -n 10 -o "$tab"
 expect 'a scene whose name has a tab' 0 'zones +10' "$portcullis" info "$tab"
 expect 'a name that is not UTF-8' 2 'not UTF-8' "$portcullis" generate maze -n 10 -o "$(printf 'b\377d.json')"
+for culler in 'all=none' 'brute;all=none' ';none' 'all=none;' '=none;brute' 'all=;brute'; do
+  expect "a culler without the other zones: $culler" 2 "'$culler': write NAME=CHAIN;CHAIN" "$portcullis" bench good.obj --views auto:2 --culler "$culler"
+done
+expect 'a culler of no such zone' 2 "there is no zone 'kitchen'" "$portcullis" bench good.obj --views auto:2 --culler 'kitchen=none;brute'
+expect 'a culler of no such chain' 2 "no culler 'nobody'" "$portcullis" bench good.obj --views auto:2 --culler 'all=nobody;brute'
+expect 'a zone named twice by a culler' 2 'already' "$portcullis" bench good.obj --views auto:2 --culler 'all=none;all=brute;none'
 expect 'a zone named twice' 2 'already' "$portcullis" bench good.obj --views auto:2 --zone all=none --zone all=brute
 expect 'unwritable result, told first' 2 'nowhere/out.json: error: cannot be written' "$portcullis" bench missing.obj --views auto:2 --json nowhere/out.json
 expect 'unwritable picture, told first' 2 'nowhere/out.png: error: cannot be written' "$portcullis" render missing.obj --views auto:2 -o nowhere/out.png

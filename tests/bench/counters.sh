@@ -25,6 +25,16 @@ true_that() {
   fi
 }
 
+# check NAME VALUE COMPARED LIMIT: a line that says whether it holds, with the figure; none doesn't.
+check() { # NAME VALUE COMPARED LIMIT
+  if [ -n "$2" ] && [ "$2" != null ] && awk "BEGIN { exit !($2 $3 $4) }"; then
+    passed=$((passed + 1)) word=PASS
+  else
+    failed=$((failed + 1)) word=FAIL
+  fi
+  printf '%s %s: %s %s %s\n' "$word" "$1" "${2:-none}" "$3" "$4"
+}
+
 finish() {
   printf '%s passed, %s failed\n' "$passed" "$failed"
   [ "$failed" -eq 0 ]

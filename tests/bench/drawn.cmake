@@ -2,10 +2,13 @@
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(JANSSON REQUIRED IMPORTED_TARGET jansson)
 get_target_property(app_sources portcullis SOURCES)
-list(TRANSFORM app_sources PREPEND ${PROJECT_SOURCE_DIR}/host/app/)
+list(TRANSFORM app_sources PREPEND ${PROJECT_SOURCE_DIR}/host/app/ REGEX "^[^/]") # what is made at build time has a whole path
+list(FILTER app_sources EXCLUDE REGEX "\\.h$")
 add_library(mutant_app OBJECT ${app_sources})
+add_dependencies(mutant_app portcullis)
+target_include_directories(mutant_app PRIVATE $<TARGET_PROPERTY:portcullis,INCLUDE_DIRECTORIES>)
 target_compile_definitions(mutant_app PRIVATE "PORTCULLIS_VERSION=\"mutant\"")
-target_link_libraries(mutant_app PUBLIC portcullis_flags portcullis_bench host_compile host_core host_import host_render PkgConfig::JANSSON m)
+target_link_libraries(mutant_app PUBLIC portcullis_flags portcullis_bench portcullis_check host_compile host_core host_import host_render PkgConfig::JANSSON m)
 
 function(portcullis_drawing_mutant name file old new)
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/drawing/${name})

@@ -27,7 +27,7 @@ function(portcullis_mutant plugin name file old new)
   target_link_libraries(${target} PRIVATE portcullis_flags portcullis_api m)
   set_target_properties(${target} PROPERTIES PREFIX "" OUTPUT_NAME ${plugin} SUFFIX ".culler.so"
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/mutants/${plugin}-${name})
-  if(PORTCULLIS_SANITIZE) # their test needs GL and is not run there, and kernels with sanitizers take a minute each
+  if(PORTCULLIS_SANITIZE OR NOT PORTCULLIS_MUTANTS) # their test is not run there, and kernels with sanitizers take a minute each
     set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
   endif()
   foreach(source ${changed}) # each file's own instruction set

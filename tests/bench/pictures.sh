@@ -26,6 +26,7 @@ run plain --views path:walk --culler frustum
 is 'none shows pictures: nothing is compared' "$(row flip 1) $(row psnr 1) $(row crack_pixels 1)" 'null null null'
 is 'and the table has no columns of it' "$(grep -c FLIP "$work/table")" 0
 true_that 'percentiles of total_ms stand in order' "$(row total_ms 1) <= $(row total_ms_p95 1) && $(row total_ms_p95 1) <= $(row total_ms_p99 1)"
+true_that 'and their mean is theirs' "$(row total_ms_mean 1) > 0 && $(row total_ms_mean 1) <= 1.000001 * $(row total_ms_p99 1)"
 
 run all --views path:walk --culler frustum --culler none --culler "$fine" --culler "$coarse" --pictures --csv "$work/all.csv" --images "$work/images"
 is 'exit code' "$code" 0
@@ -39,6 +40,7 @@ for i in 1 2; do
 done
 true_that 'movers are seen' "$(row mover_pixels 1) > 1000"
 is 'before and behind the right things' "$(row mover_pixels_wrong 1) $(row mover_pixels_wrong 2)" '0 0'
+true_that 'some of what is wrong is so by more than a pixel, of what is right none' "$(row mover_pixels_wrong_far 3) <= $(row mover_pixels_wrong 3) && $(row mover_pixels_wrong_far 2) == 0"
 true_that 'behind a picture with few depths seldom wrongly' "$(row mover_pixels_wrong 3) < 0.01 * $(row mover_pixels 3)"
 is 'every view but the first follows another' "$(same "$json" popping_views)" 59
 true_that 'a coarse picture pops when it is taken anew' "$(row popping 4) > $(row popping 3) && $(row popping_max 4) >= $(row popping_p99 4) && $(row popping_p99 4) >= $(row popping 4)"

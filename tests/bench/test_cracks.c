@@ -3,6 +3,7 @@
 #include "bench/cracks.h"
 #include "tests/common/test.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum { WIDE = 12, HIGH = 9 };
@@ -91,10 +92,41 @@ static void movers_are_right_where_they_show_in_both_or_in_neither(void **state)
     (void)state;
     static const float movers[] = {0, 0.5f, 0.5f, 0.5f, 0.5f, 0.25f}, truth[] = {0.5f, 0.5f, 0.75f, 0.5f, 0.75f, 0.25f};
     static const float picture[] = {0.1f, 0.5f, 0.5f, 0.625f, 0.875f, 0};
-    const mover_order c = movers_count(&(mover_pictures){movers, truth, picture, 6});
+    const mover_order c = movers_count(&(mover_pictures){movers, truth, picture, 6, 1});
     assert_int_equal(c.pixels, 4); // shown in both; only in the picture; hidden by it; lost in it. In neither: does not count
     assert_int_equal(c.wrong, 3);
-    assert_int_equal(movers_count(&(mover_pictures){movers, truth, truth, 6}).wrong, 0);
+    assert_int_equal(movers_count(&(mover_pictures){movers, truth, truth, 6, 1}).wrong, 0);
+}
+
+// A mover stands over columns 4 to 11, and is hidden by what is nearer to the left of a column; in the picture that column is another.
+static mover_order order_where(int hidden_to, int hidden_in_picture_to)
+{
+    static float movers[HIGH][WIDE];
+    for (int y = 0; y < HIGH; ++y)
+        for (int x = 0; x < WIDE; ++x) {
+            movers[y][x] = x >= 4 && x < 12 ? 0.5f : 0;
+            geometry[y][x] = x < hidden_to ? 0.75f : movers[y][x] > 0 ? movers[y][x] : 0.25f;
+            shown[y][x] = x < hidden_in_picture_to ? 0.75f : movers[y][x] > 0 ? movers[y][x] : 0.25f;
+        }
+    return movers_count(&(mover_pictures){movers[0], geometry[0], shown[0], WIDE, HIGH});
+}
+
+static void a_pixel_s_displacement_of_what_hides_a_mover_is_wrong_and_not_far(void **state)
+{
+    (void)state;
+    for (int moved = -3; moved <= 3; ++moved) {
+        const mover_order c = order_where(8, 8 + moved);
+        assert_int_equal(c.wrong, abs(moved) * HIGH);
+        assert_int_equal(c.wrong_far, moved ? (abs(moved) - 1) * HIGH : 0);
+    }
+}
+
+static void a_mover_lost_before_what_is_farther_is_wrong_far(void **state)
+{
+    (void)state;
+    const mover_order c = order_where(4, 12); // hidden by nothing: what stands beside it at the left is nearer, what at the right farther
+    assert_int_equal(c.wrong, 8 * HIGH);
+    assert_int_equal(c.wrong_far, 7 * HIGH);
 }
 
 int main(void)
@@ -105,6 +137,8 @@ int main(void)
         cmocka_unit_test(what_spills_counts_beyond_one_pixel_of_a_silhouette),
         cmocka_unit_test(the_picture_s_border_tells_of_no_spills),
         cmocka_unit_test(movers_are_right_where_they_show_in_both_or_in_neither),
+        cmocka_unit_test(a_pixel_s_displacement_of_what_hides_a_mover_is_wrong_and_not_far),
+        cmocka_unit_test(a_mover_lost_before_what_is_farther_is_wrong_far),
         cmocka_unit_test(what_need_not_be_shown_leaves_no_hole_and_is_no_spill),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

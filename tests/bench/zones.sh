@@ -62,6 +62,14 @@ run zone --culler brute --zone '*=none' --zone 'kitchen=frustum'
 is 'a name goes before a pattern' "$(counter "$json" polygons_drawn)" "$hall"
 run zone --culler brute --zone 'kitchen=frustum' --zone '*=none'
 is 'in either order' "$(counter "$json" polygons_drawn)" "$hall"
+run named --culler 'hall=none;frustum' --culler '*all=none;frustum' --culler '*=brute;hall=none;scene' --culler frustum --culler 'kitchen=scene;none' --culler scene --culler none
+is 'cullers that name zones' "$(same "$json" missed_pixels)" 0
+is 'by name, by pattern, the name before the pattern' "$(counter "$json" polygons_drawn | sed -n 1,3p | sort -u)" "$hall"
+true_that 'less in the other' "$(counter "$json" polygons_drawn | sed -n 4p) < $hall"
+true_that 'some of the zones as the scene says' "$(counter "$json" polygons_drawn | sed -n 5p) < $(counter "$json" polygons_drawn | sed -n 7p)"
+is 'their names as typed' "$(grep -c '"name": "two_rooms/walk/hall=none;frustum"' "$json")" 1
+run named --culler 'hall=none;frustum' --zone 'hall=frustum' --culler frustum
+is '--zone goes before what a culler names' "$(counter "$json" polygons_drawn | sort -u | wc -l)" 1
 run zone --no-truth --culler frustum --zone '*=none'
 is 'a library that no zone names is not opened' "$(counter "$json" plugins_opened)" 0
 is 'nor a context' "$(counter "$json" gl_used)" 0

@@ -42,15 +42,6 @@ choose_chains() { # 100|200
   names=$(printf '%s\n' "$chains" | sed 's/: .*//')
 }
 
-check() { # NAME VALUE COMPARED LIMIT
-  if [ -n "$2" ] && [ "$2" != null ] && awk "BEGIN { exit !($2 $3 $4) }"; then
-    passed=$((passed + 1)) word=PASS
-  else
-    failed=$((failed + 1)) word=FAIL
-  fi
-  printf '%s %s: %s %s %s\n' "$word" "$1" "${2:-none}" "$3" "$4"
-}
-
 figure() { # FILE CHAIN_NAME COUNTER: of the chains that the file's name tells
   case $1 in *-200-*) choose_chains 200 ;; *) choose_chains 100 ;; esac
   row=$(printf '%s\n' "$names" | grep -nxF "$2" | cut -d: -f1)

@@ -14,15 +14,6 @@ few=8 size=320x180 cities=1000 tiles=256
 methods='wait twophase chc hiz' # held to 0 missed pixels on every scene; each joins by one word
 [ $# -gt 0 ] || set -- city terrain delft flagship maps cheap last
 
-check() { # NAME VALUE COMPARED LIMIT
-  if [ -n "$2" ] && [ "$2" != null ] && awk "BEGIN { exit !($2 $3 $4) }"; then
-    passed=$((passed + 1)) word=PASS
-  else
-    failed=$((failed + 1)) word=FAIL
-  fi
-  printf '%s %s: %s %s %s\n' "$word" "$1" "${2:-none}" "$3" "$4"
-}
-
 # held NAME VALUE COMPARED LIMIT: a figure that the long tier alone judges.
 held() { [ -z "${PORTCULLIS_LONG:-}" ] || check "$@"; }
 

@@ -114,5 +114,5 @@ void fake_driver_new_frame(fake_driver *f)
 
 frame_driver fake_driver_of(fake_driver *f)
 {
-    return (frame_driver){f, fake_draw, fake_draw_movers, fake_capture, fake_show, fake_test, fake_collect, fake_draw_clipped, fake_check_slots};
+    return (frame_driver){f, fake_draw, fake_draw_movers, fake_capture, fake_show, fake_test, fake_collect, fake_draw_clipped, fake_check_slots, NULL};
 }

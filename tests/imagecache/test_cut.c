@@ -172,6 +172,31 @@ static void what_costs_less_is_chosen(void **state)
     town_close(&t);
 }
 
+static void a_cells_picture_costs_more_where_pictures_wore_out_sooner_than_foretold(void **state)
+{
+    (void)state;
+    uint64_t r = 6505, dearer = 0;
+    town t;
+    town_open(&t, 5, 3000);
+    float *const before = calloc(t.lists.node_count, sizeof *before);
+    assert_non_null(before);
+    for (int k = 0; k < 40; k++) {
+        cut_request q = look(&t, anywhere(&r), 0.2);
+        cut_make(&t.cut, &q);
+        memcpy(before, t.cut.prices, t.lists.node_count * sizeof *before);
+        q.wear = 6;
+        cut_make(&t.cut, &q);
+        for (uint32_t i = 0; i < t.inview.count; i++) {
+            const uint32_t node = nodes_of_cell(&t.cells.ground, cell_at(&t, t.inview.list[i]));
+            assert_true(t.cut.prices[node] >= before[node]);
+            dearer += t.cut.prices[node] > before[node];
+        }
+    }
+    assert_true(dearer > 1000);
+    free(before);
+    town_close(&t);
+}
+
 static void pictures_come_near_first(void **state)
 {
     (void)state;
@@ -200,6 +225,7 @@ int main(void)
         cmocka_unit_test(each_cell_in_view_is_geometry_or_in_one_picture),
         cmocka_unit_test(no_geometry_lies_behind_a_picture),
         cmocka_unit_test(what_costs_less_is_chosen),
+        cmocka_unit_test(a_cells_picture_costs_more_where_pictures_wore_out_sooner_than_foretold),
         cmocka_unit_test(pictures_come_near_first),
     };
     return cmocka_run_group_tests_name("image cache: the cut", tests, NULL, NULL);

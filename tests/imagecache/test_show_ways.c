@@ -27,6 +27,31 @@ static void centre_alignment_says_what_it_is_off_too(void **state)
     field_close(&f);
 }
 
+// Fewer rows at a larger tolerance: boxes guarded by wider seams, beside the view's axis, were too wide across it, and all was geometry in each frame.
+static void centre_alignment_has_pictures_in_small_views_too(void **state)
+{
+    (void)state;
+    static const char *const tolerances[] = {"1", "2", "4"};
+    for (int t = 0; t < 3; t++) {
+        const show_values values = {"5", "rings", "rings", "centre", "on", tolerances[t], "shown", "bounded", "256"};
+        uint32_t shown = 0;
+        field f;
+        field_open(&f, &values, 20000);
+        for (uint32_t frame = 1; frame < 120; frame++) {
+            cull_plane planes[4];
+            cull_view view;
+            show_look(field_eye(frame), frame, &view, planes);
+            view.width_px /= 2, view.height_px /= 2, view.pixels_per_tangent /= 2, view.pixel_tangent *= 2;
+            const cull_volume volume = {planes, 4, 0};
+            show_frame(&f.s, &view, &volume, ANSWERS_SEEN);
+            assert_int_equal(f.s.batch.limits_hit, 0);
+            shown += f.s.batch.picture_count > 0;
+        }
+        assert_true(shown > 60);
+        field_close(&f);
+    }
+}
+
 // Turning on the spot: the parallelogram in the world needs no new picture, the report's way does.
 static void turning_costs_the_centre_alignment_pictures_and_the_parallelogram_none(void **state)
 {
@@ -111,6 +136,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(centre_alignment_says_what_it_is_off_too),
+        cmocka_unit_test(centre_alignment_has_pictures_in_small_views_too),
         cmocka_unit_test(turning_costs_the_centre_alignment_pictures_and_the_parallelogram_none),
         cmocka_unit_test(pictures_never_take_more_than_they_may),
         cmocka_unit_test(with_steady_frames_stale_pictures_say_what_they_are_off),

@@ -110,6 +110,61 @@ static void a_kept_depth_is_that_of_the_surface_from_any_eye(void **state)
     }
 }
 
+// ---- What tests see ----
+
+static uint32_t pixels_of_the_second_quad(bed *b)
+{
+    uint32_t stalled = 0;
+    cull_answer answer;
+    const cull_test test = {.box = {in_zone(b, -1, -1, -9.5), in_zone(b, 1, 1, -8.5)}, .tag = 5};
+    renderer_test(b->g, b->l, 0, &test, 1, 1);
+    assert_int_equal(bed_collect(b, COLLECT_ALL, 1, &answer, 1, &stalled), 1);
+    return answer.pixels;
+}
+
+// Its outline and its depth may be off by the tolerance.
+static void a_picture_with_depth_hides_no_test_and_geometry_does(void **state)
+{
+    bed *b = *state;
+    const camera c = camera_at(0, 0, 0);
+    const frame_request q = request(&c);
+    const quad quads[] = {quad_at(-5, -20, -20, 20, 20), quad_at(-9, -1, -1, 1, 1)};
+    scene_with_slots(b, quads, 2);
+    cull_capture capture = whole_picture(b, &c, 5, &first_quad, 1);
+    capture.keep_depth = 1;
+    const cull_picture p = picture_of(&capture);
+    assert_int_equal(renderer_begin(b->g, &q, &b->r), RESULT_OK);
+    renderer_capture(b->g, b->l, 0, &capture);
+    renderer_show(b->g, b->l, 0, &p);
+    assert_true(pixels_of_the_second_quad(b) > 0);
+    bed_draw(b, b->l, &first_quad, 1);
+    assert_int_equal(pixels_of_the_second_quad(b), 0);
+    renderer_end(b->g);
+}
+
+static void show_and_capture_again(bed *b, void *what)
+{
+    const cull_capture *captures = what; // of the same slot
+    const cull_picture p = picture_of(&captures[0]);
+    renderer_capture(b->g, b->l, 0, &captures[0]);
+    renderer_show(b->g, b->l, 0, &p);
+    renderer_capture(b->g, b->l, 0, &captures[1]);
+}
+
+static void a_slot_captured_again_in_the_frame_that_showed_it_shows_what_it_held(void **state)
+{
+    bed *b = *state;
+    const camera c = camera_at(0, 0, 0);
+    const frame_request q = request(&c);
+    const quad quads[] = {quad_at(-8, -4, -4, 0, 4), quad_at(-8, 0, -4, 4, 4)};
+    scene_with_slots(b, quads, 2);
+    cull_capture captures[] = {whole_picture(b, &c, 8, &first_quad, 1), whole_picture(b, &c, 8, &second_quad, 1)};
+    uint8_t *plain = bed_frame(b, &q, b->l, &first_quad, 1), *shown = frame_of(b, &q, show_and_capture_again, captures);
+    assert_int_equal(pixels_that_differ(plain, shown), 0);
+    drop_pixels(plain);
+    drop_pixels(shown);
+}
+
 // ---- Outlines ----
 
 static void set_options(bed *b, picture_filter filter, picture_format format, uint64_t bytes_most)
@@ -393,6 +448,8 @@ int main(void)
         T(a_picture_without_depth_stands_behind_geometry_at_any_distance),
         T(of_pictures_without_depth_the_first_shown_stands_in_front),
         T(a_kept_depth_is_that_of_the_surface_from_any_eye),
+        T(a_picture_with_depth_hides_no_test_and_geometry_does),
+        T(a_slot_captured_again_in_the_frame_that_showed_it_shows_what_it_held),
         T(a_picture_is_exact_at_its_eye_in_every_format),
         T(filtering_takes_no_colour_from_outside_the_outline),
         T(a_turned_eye_finds_few_gaps_along_outlines_and_nothing_a_pixel_away_from_them),

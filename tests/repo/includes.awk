@@ -5,7 +5,7 @@ BEGIN {
                " stddef stdint stdio stdlib stdnoreturn string tgmath threads time uchar wchar wctype "
     level["api"] = 0; level["host/core"] = 1; level["plugins"] = 1
     level["host/import"] = level["host/compile"] = level["host/mesh"] = level["host/render"] = 2
-    level["bench"] = level["host/library"] = 3; level["host/app"] = 4; level["tests"] = 5
+    level["bench"] = level["host/library"] = level["host/check"] = 3; level["host/app"] = 4; level["tests"] = 5
     beside["host/import host/mesh"] = beside["host/compile host/mesh"] = beside["host/compile host/import"] = 1
     owner["epoxy"] = owner["EGL"] = owner["GLFW"] = owner["GL"] = "host/render" # OpenGL
     owner["OpenMesh"] = "host/mesh"

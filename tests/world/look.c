@@ -176,5 +176,5 @@ void site_driver_new_frame(site_driver *d)
 
 frame_driver site_driver_of(site_driver *d)
 {
-    return (frame_driver){d, on_draw, on_draw_movers, on_capture, on_show, on_test, on_collect, NULL, NULL};
+    return (frame_driver){d, on_draw, on_draw_movers, on_capture, on_show, on_test, on_collect, NULL, NULL, NULL};
 }

@@ -166,6 +166,22 @@ static void vertices_that_leave_the_numbers_on_the_way_are_refused(void **state)
     assert_int_equal(scene_builder_vertices(f->builder, &v, 1, 0, &first), RESULT_BAD_INPUT);
 }
 
+static void an_item_that_is_its_box_stays_one_by_quarters_alone(void **state)
+{
+    builder_fixture *f = *state;
+    static const builder_transform turned = {{{0.8, 0, 0.6, 0}, {0, 1, 0, 0}, {-0.6, 0, 0.8, 0}}};
+    static const builder_transform *const transforms[] = {NULL, &quarter, &turned};
+    for (int i = 0; i < 3; ++i) {
+        builder_fixture_restart(f);
+        if (transforms[i]) assert_int_equal(scene_builder_transform(f->builder, transforms[i]), RESULT_OK);
+        const uint32_t first = builder_fixture_vertex(f, 0, 0, 0), indices[3] = {first, builder_fixture_vertex(f, 1, 0, 0), builder_fixture_vertex(f, 0, 1, 1)};
+        const builder_item box = {.indices = indices, .index_count = 3, .polygon_count = 1, .flags = CULL_ITEM_BOX};
+        assert_int_equal(scene_builder_item(f->builder, &box), RESULT_OK);
+        assert_int_equal(builder_fixture_finish(f), RESULT_OK);
+        assert_int_equal((f->scene->items[0].flags & CULL_ITEM_BOX) != 0, i < 2);
+    }
+}
+
 int main(void)
 {
 #define TEST(t) cmocka_unit_test_setup_teardown(t, builder_fixture_set_up, builder_fixture_tear_down)
@@ -174,6 +190,7 @@ int main(void)
         TEST(everything_that_comes_in_is_turned_scaled_and_moved),
         TEST(a_path_turns_about_the_axes_of_its_include),
         TEST(what_is_no_turn_with_one_scale_is_refused_and_the_one_before_stays),
+        TEST(an_item_that_is_its_box_stays_one_by_quarters_alone),
         TEST(vertices_that_leave_the_numbers_on_the_way_are_refused),
     };
     return cmocka_run_group_tests_name("zones transform", tests, NULL, NULL);
