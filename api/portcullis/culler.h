@@ -1,9 +1,12 @@
 // culler.h: the whole contract between a Portcullis host and a culling plugin. Strict C11, reads as C++17.
 // SPDX-License-Identifier: MIT
 //
-// CULL_ABI 0 promises nothing yet. From 1 on no struct and no slot below changes; a new ability is a new extension,
-// asked for by its id "cull.NAME/REVISION", where NULL means "not here". A slot marked NULL-able may be NULL, every
-// other one is checked once, at load.
+// CULL_ABI numbers all below. Under one number no struct and no slot changes; a new ability is a new extension, asked for
+// by its id "cull.NAME/REVISION", where NULL means "not here". A slot marked NULL-able may be NULL, every other one is
+// checked once, at load. `reserved`: 0 from who writes it, not looked at by who reads. A flag that a plugin doesn't know
+// means nothing to it, and a purpose that it doesn't know is CULL_VIEW_MAIN's.
+// What is lent for a call (a view, visit, zone or query) is known to the other side by its address, as extensions may tell
+// more about it: hand on the one that you were given, no copy.
 // Threads: [main]  the host's control thread, no step of this culler running.
 //          [build] any thread, one at a time per culler.
 //          [step]  any thread, one at a time per query; queries of one culler run in parallel.
@@ -19,7 +22,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define CULL_ABI 0u
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define CULL_ABI 1u
 #define CULL_MAX_PLANES 32u       // planes in one volume; a narrowing that needs more keeps the volume it had
 #define CULL_MAX_STEPS 1000000u   // the largest cull_built.max_steps that a host accepts
 #define CULL_PADDING 16u          // elements readable, of no meaning, behind each array of cull_boxes
@@ -122,14 +129,14 @@ enum { // cull_view.flags
 
 typedef struct cull_view {
     // The view in double, for who derives planes of his own (cross): with the zone's radius the fields of cull_guard in
-    // plane.h. eye w 1; what they hold with w 0 is not settled.
-    double eye_exact[4];  // relative to the zone's origin; w as in eye
+    // plane.h.
+    double eye_exact[4];  // relative to the zone's origin; w 1
     double forward[3];    // a unit vector
     double pixel_tangent; // height (or width, the larger) of a pixel, at distance 1 along forward
     double reach;         // the largest distance of a point of the picture, at distance 1 along forward
-    float eye[4];             // w 1: a point. w 0: the direction towards an infinitely far viewer
+    float eye[4];             // w 1. A parallel view comes only to who has an extension for it
     float clip_from_zone[16]; // column major, visible: -w <= x, y <= w and 0 <= z <= w, nearer is larger (reversed z)
-    float pixels_per_tangent; // projected radius in pixels = this * radius / distance; w 0: this * radius
+    float pixels_per_tangent; // projected radius in pixels = this * radius / distance
     float near_distance;      // along the view's axis
     uint32_t width_px, height_px;
     cull_purpose purpose;
@@ -177,6 +184,7 @@ typedef struct cull_visit {
     uint32_t volume_count, candidate_count, picture_count, capture_count, mover_count, answer_count, clipped_count;
     uint32_t step;              // 0 in the first step of a frame
     uint32_t may_step;          // 1: it is the last of select and filters, which may give tests and return CULL_MORE or CULL_WAIT
+    uint32_t reserved;
 } cull_visit;
 
 // ---- What one step gives: host memory, sized once from cull_built ----
@@ -202,6 +210,7 @@ struct cull_capture {
     cull_vec3 eye;         // where eye_is_said: what it is taken from, such as where the view's eye will be in some frames
     uint32_t eye_is_said;  // 0: from the view's eye
     float detail_m;        // 0: exactly these items; else coarser ones will do, of which no point is farther from its place (cull_costs.levels)
+    uint32_t reserved;
 };
 
 // "Show slot instead of these items." Allowed while visit.slots[slot] is 1, or once captured in this step or before.
@@ -212,6 +221,7 @@ struct cull_picture {
     float error_px; // the culler's bound on how far a pixel may sit from its place
     uint32_t place_is_said;      // 0: it is shown as the parallelogram that it was taken through
     cull_vec3 corner, right, up; // else as this one
+    uint32_t reserved;
 };
 
 // "Draw these items clipped to what lies inside all planes": geometry that meets a picture at a seam. An item may stand in
@@ -262,7 +272,7 @@ enum {
 
 typedef struct cull_host cull_host;
 struct cull_host {
-    uint32_t abi;
+    uint32_t abi, reserved; // abi: the number that is spoken to this plugin, its own
     void *user;                                                          // the host's
     // [any, not in a step] align is a power of two. NULL: out of memory.
     void *(*alloc)(const cull_host *, size_t size, size_t align);
@@ -300,7 +310,7 @@ typedef struct cull_built {
                               // and no filter between; 0 takes candidates
     uint32_t takes_movers;    // last of select and filters: 1 decides about movers too; 0 the host draws them
     uint32_t max_clipped;     // in one frame
-    uint32_t reserved;
+    uint32_t reserved[2];
 } cull_built;
 
 // The key `backface` is reserved: a select's, "1": drops walls that are not TWO_SIDED and show only their back to the
@@ -345,7 +355,8 @@ typedef struct cull_plugin {
     // (plane.h), from the view's eye_exact, forward, pixel_tangent and reach and the zone's radius.
     cull_crossing (*cross)(cull_query *, const cull_view *, const cull_volume *in, uint32_t portal, cull_plane *planes,
                            uint32_t *plane_count);
-    const void *(*get_extension)(const cull_culler *, const char *id); // [any] after build; NULL when unknown
+    // [any] Of a culler, after build; culler NULL: of the plugin as a whole. NULL when unknown.
+    const void *(*get_extension)(const cull_culler *, const char *id);
 } cull_plugin;
 
 // Extension "cull.bake/1" of a built culler: keep the index in the scene file. The host keys blobs by descriptor id and
@@ -458,7 +469,7 @@ typedef struct cull_sight {
 } cull_sight;
 
 // The one exported symbol. Data, not code: reading what a library offers runs nothing of it.
-typedef struct cull_entry_v0 { uint32_t abi, plugin_count; const cull_plugin *const *plugins; } cull_entry_v0;
+typedef struct cull_exports { uint32_t abi, plugin_count; const cull_plugin *const *plugins; } cull_exports;
 #define CULL_ENTRY_SYMBOL "cull_entry"
 #if defined(_WIN32)
 #define CULL_EXPORT __declspec(dllexport)
@@ -466,12 +477,11 @@ typedef struct cull_entry_v0 { uint32_t abi, plugin_count; const cull_plugin *co
 #define CULL_EXPORT __attribute__((visibility("default")))
 #endif
 #ifdef __cplusplus
-#define CULL_ENTRY extern "C" CULL_EXPORT const cull_entry_v0 cull_entry
-extern "C" {
+#define CULL_ENTRY extern "C" CULL_EXPORT const cull_exports cull_entry
 #else
-#define CULL_ENTRY CULL_EXPORT const cull_entry_v0 cull_entry
+#define CULL_ENTRY CULL_EXPORT const cull_exports cull_entry
 #endif
-extern CULL_EXPORT const cull_entry_v0 cull_entry;
+extern CULL_EXPORT const cull_exports cull_entry;
 #ifdef __cplusplus
 }
 #endif

@@ -136,7 +136,7 @@ static void cull_and_draw(explore *e)
 {
     const frame_input q = {.camera = &e->fly,
                            .frame = {.width_px = e->width_px, .height_px = e->height_px, .frame = ++e->frame, .purpose = CULL_VIEW_MAIN},
-                           .driver = {e, drive_draw, drive_movers, drive_capture, drive_show, drive_test, drive_collect, drive_draw_clipped, drive_check_slots}};
+                           .driver = {e, drive_draw, drive_movers, drive_capture, drive_show, drive_test, drive_collect, drive_draw_clipped, drive_check_slots, NULL}};
     world_cull(e->v, &q, &e->set, &e->stats);
     e->counters.cull_us = e->stats.cull_ns / 1000;
 }

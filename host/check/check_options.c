@@ -23,6 +23,18 @@ static const char *option_fault(const cull_descriptor *d, uint32_t i)
     return NULL;
 }
 
+// A host may ask a library as a whole before any culler of it is made: what belongs to a culler isn't there.
+static check_verdict asks_whole(check_run *r)
+{
+    static const char *const ids[] = {"check.nothing/1", CULL_EXT_HIERARCHY, CULL_EXT_BAKE, CULL_EXT_EXPLAIN, CULL_EXT_RAY,
+                                      CULL_EXT_FIGURES, CULL_EXT_PIECES, CULL_EXT_SIGHT};
+    for (size_t i = 0; i < sizeof ids / sizeof *ids; ++i) {
+        run_at(r, "get_extension of the plugin as a whole (culler NULL), %s", ids[i]);
+        if (r->plugin->get_extension(NULL, ids[i])) return run_fail(r, "it gives an extension of a culler where there is none");
+    }
+    return CHECK_PASS;
+}
+
 check_verdict check_entry(check_run *r)
 {
     const cull_plugin *p = r->plugin;
@@ -39,7 +51,7 @@ check_verdict check_entry(check_run *r)
     if (!p->create || !p->destroy || !p->build || !p->open || !p->close || !p->get_extension)
         return run_fail(r, "one of create, destroy, build, open, close, get_extension is NULL");
     if (!p->select && !p->filter && !p->cross) return run_fail(r, "it has no verb: select, filter and cross are all NULL");
-    return CHECK_PASS;
+    return asks_whole(r);
 }
 
 static cull_result try_value(check_run *r, uint32_t option, const char *value, uint32_t *lines)

@@ -134,7 +134,7 @@ static const cull_costs COSTS = {.polygon_ns = 250, .pixel_ns = 3, .picture_ns =
 
 void lender_open(lender *l)
 {
-    *l = (lender){.host = {CULL_ABI, l, host_alloc, host_free, host_log, host_parallel_for, host_extension}, .costs = COSTS, .fill = 0xa5};
+    *l = (lender){.host = {CULL_ABI, 0, l, host_alloc, host_free, host_log, host_parallel_for, host_extension}, .costs = COSTS, .fill = 0xa5};
     pthread_mutex_init(&l->lock, NULL);
 }
 

@@ -48,7 +48,7 @@ const char *run_open(check_run *r, const char *id)
     snprintf(path, sizeof path, "%s%s", strchr(r->file, '/') ? "" : "./", r->file); // a bare name is a file here, not the system's to find
     r->library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (!r->library) return dlerror();
-    const cull_entry_v0 *entry = dlsym(r->library, CULL_ENTRY_SYMBOL);
+    const cull_exports *entry = dlsym(r->library, CULL_ENTRY_SYMBOL);
     if (!entry) return "it has no symbol " CULL_ENTRY_SYMBOL "; declare it with CULL_ENTRY";
     if (entry->abi != CULL_ABI) return "it is of another ABI number than this host; build it against this host's culler.h";
     if (entry->plugin_count == 0 || entry->plugin_count > 64 || !entry->plugins) return "it lists no plugin, or over 64";
@@ -65,7 +65,7 @@ const char *run_open(check_run *r, const char *id)
 
 void run_ids(const check_run *r, char *ids, size_t size)
 {
-    const cull_entry_v0 *entry = dlsym(r->library, CULL_ENTRY_SYMBOL);
+    const cull_exports *entry = dlsym(r->library, CULL_ENTRY_SYMBOL);
     size_t used = 0;
     for (uint32_t i = 0; entry && i < entry->plugin_count; ++i) {
         const cull_plugin *p = entry->plugins[i];

@@ -56,7 +56,7 @@ static const cull_costs FIXED_COSTS = {.polygon_ns = 250, .pixel_ns = 3, .pictur
 
 void host_services_fill(host_services *s, const allocator *memory, report *log)
 {
-    *s = (host_services){.host = {CULL_ABI, s, host_alloc, host_free, host_log, host_parallel_for, host_extension},
+    *s = (host_services){.host = {CULL_ABI, 0, s, host_alloc, host_free, host_log, host_parallel_for, host_extension},
                          .memory = memory,
                          .log = log,
                          .costs = FIXED_COSTS};

@@ -195,7 +195,7 @@ static const char *entry_fault(const image *m, const elf_symbol *entry, library_
     const uint32_t abi = place_of(m, entry->st_value, &at) ? number_at(m, at) : 0; // not in the file: memory that starts as zeros
     const char *fault = library_abi_fault(abi, to);
     if (fault) return fault;
-    if (entry->st_size && entry->st_size < sizeof(cull_entry_v0)) return "its symbol " CULL_ENTRY_SYMBOL " is smaller than a cull_entry_v0; declare it with CULL_ENTRY";
+    if (entry->st_size && entry->st_size < sizeof(cull_exports)) return "its symbol " CULL_ENTRY_SYMBOL " is smaller than a cull_exports; declare it with CULL_ENTRY";
     return NULL;
 }
 

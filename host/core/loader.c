@@ -138,7 +138,7 @@ static const char *plugin_fault(const loader *l, const cull_plugin *p)
     return plugin_known(l, p->descriptor->id) ? "its id is taken by a culler found before it" : NULL;
 }
 
-static const char *entry_fault(const loader *l, const cull_entry_v0 *entry, library_fault_text *text)
+static const char *entry_fault(const loader *l, const cull_exports *entry, library_fault_text *text)
 {
     if (!entry) return "it has no symbol " CULL_ENTRY_SYMBOL "; declare it with CULL_ENTRY";
     const char *other_abi = library_abi_fault(entry->abi, text); // the one field that every ABI has
@@ -180,7 +180,7 @@ static int file_seen(const loader *l, const struct stat *status)
     return 0;
 }
 
-static result library_keep(loader *l, void *handle, const char *path, const cull_entry_v0 *entry)
+static result library_keep(loader *l, void *handle, const char *path, const cull_exports *entry)
 {
     const library kept = {handle, arena_text(&l->texts, path, strlen(path))};
     if (!kept.path || !buffer_append(&l->libraries, &kept, 1)) {
@@ -210,7 +210,7 @@ static result library_open(loader *l, const char *path)
         const char *reason = dlerror();
         return refuse(l, path, reason ? reason : "the system cannot load it");
     }
-    const cull_entry_v0 *entry = dlsym(handle, CULL_ENTRY_SYMBOL);
+    const cull_exports *entry = dlsym(handle, CULL_ENTRY_SYMBOL);
     fault = entry_fault(l, entry, &text);
     if (!fault) return library_keep(l, handle, path, entry);
     const result refused = refuse(l, path, fault);

@@ -249,6 +249,7 @@ static const void *bsp_get_extension(const cull_culler *c, const char *id)
     static const cull_explain explain = {bsp_explain};
     static const cull_bake bake = {bsp_save};
     static const cull_ray ray = {bsp_segment, bsp_box};
+    if (!c) return NULL; // of the library as a whole it has none
     if (strcmp(id, CULL_EXT_EXPLAIN) == 0) return &explain;
     if (strcmp(id, CULL_EXT_BAKE) == 0) return &bake;
     if (strcmp(id, CULL_EXT_RAY) == 0) return &ray;

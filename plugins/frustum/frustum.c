@@ -152,7 +152,7 @@ static const void *frustum_get_extension(const cull_culler *c, const char *id)
 {
     static const cull_explain explain = {frustum_explain};
     static const cull_bake bake = {frustum_save};
-    (void)c;
+    if (!c) return NULL; // of the library as a whole it has none
     if (strcmp(id, CULL_EXT_EXPLAIN) == 0) return &explain;
     return strcmp(id, CULL_EXT_BAKE) == 0 ? &bake : NULL;
 }

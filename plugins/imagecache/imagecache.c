@@ -233,6 +233,7 @@ static size_t imagecache_explain(cull_query *q, const cull_visit *visit, uint32_
 static const void *imagecache_get_extension(const cull_culler *c, const char *id)
 {
     static const cull_explain explain = {imagecache_explain};
+    if (!c) return NULL; // of the library as a whole it has none
     if (strcmp(id, CULL_EXT_EXPLAIN) == 0) return &explain;
     return strcmp(id, CULL_EXT_FIGURES) == 0 ? &c->lent : NULL;
 }

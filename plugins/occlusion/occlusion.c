@@ -260,6 +260,7 @@ static size_t occlusion_explain(cull_query *q, const cull_visit *visit, uint32_t
 static const void *occlusion_get_extension(const cull_culler *c, const char *id)
 {
     static const cull_explain explain = {occlusion_explain};
+    if (!c) return NULL; // of the library as a whole it has none
     if (strcmp(id, CULL_EXT_EXPLAIN) == 0) return &explain;
     return strcmp(id, CULL_EXT_FIGURES) == 0 ? &c->figures->lent : NULL;
 }

@@ -183,6 +183,7 @@ static const void *octree_get_extension(const cull_culler *c, const char *id)
     static const cull_explain explain = {octree_explain};
     static const cull_bake bake = {octree_save};
     static const cull_ray ray = {octree_segment, octree_box};
+    if (!c) return NULL; // of the library as a whole it has none
     if (strcmp(id, CULL_EXT_HIERARCHY) == 0) return &c->cells.hierarchy;
     if (strcmp(id, CULL_EXT_EXPLAIN) == 0) return &explain;
     if (strcmp(id, CULL_EXT_BAKE) == 0) return &bake;

@@ -161,6 +161,7 @@ AT(cull_visit, answer_count, 100, 4);
 AT(cull_visit, clipped_count, 104, 4);
 AT(cull_visit, step, 108, 4);
 AT(cull_visit, may_step, 112, 4);
+AT(cull_visit, reserved, 116, 4);
 
 SIZE(cull_test, 32, 4);
 AT(cull_test, box, 0, 24);
@@ -185,6 +186,7 @@ AT(cull_capture, keep_depth, 164, 4);
 AT(cull_capture, eye, 168, 12);
 AT(cull_capture, eye_is_said, 180, 4);
 AT(cull_capture, detail_m, 184, 4);
+AT(cull_capture, reserved, 188, 4);
 
 SIZE(cull_picture, 88, 8);
 AT(cull_picture, runs, 0, 8);
@@ -196,6 +198,7 @@ AT(cull_picture, place_is_said, 44, 4);
 AT(cull_picture, corner, 48, 12);
 AT(cull_picture, right, 60, 12);
 AT(cull_picture, up, 72, 12);
+AT(cull_picture, reserved, 84, 4);
 
 SIZE(cull_clipped, 104, 8);
 AT(cull_clipped, runs, 0, 8);
@@ -224,6 +227,7 @@ AT(cull_batch, reserved, 92, 4);
 
 SIZE(cull_host, 56, 8);
 AT(cull_host, abi, 0, 4);
+AT(cull_host, reserved, 4, 4);
 AT(cull_host, user, 8, 8);
 AT(cull_host, alloc, 16, 8);
 AT(cull_host, free, 24, 8);
@@ -245,7 +249,7 @@ AT(cull_built, slot_count, 48, 4);
 AT(cull_built, walks_hierarchy, 52, 4);
 AT(cull_built, takes_movers, 56, 4);
 AT(cull_built, max_clipped, 60, 4);
-AT(cull_built, reserved, 64, 4);
+AT(cull_built, reserved, 64, 8);
 
 SIZE(cull_option, 32, 8);
 AT(cull_option, key, 0, 8);
@@ -342,10 +346,10 @@ AT(cull_pieces, order, 32, 8);
 SIZE(cull_sight, 8, 8);
 AT(cull_sight, part, 0, 8);
 
-SIZE(cull_entry_v0, 16, 8);
-AT(cull_entry_v0, abi, 0, 4);
-AT(cull_entry_v0, plugin_count, 4, 4);
-AT(cull_entry_v0, plugins, 8, 8);
+SIZE(cull_exports, 16, 8);
+AT(cull_exports, abi, 0, 4);
+AT(cull_exports, plugin_count, 4, 4);
+AT(cull_exports, plugins, 8, 8);
 
 VALUE(CULL_OK, 0);
 VALUE(CULL_ERR_OPTION, -1);

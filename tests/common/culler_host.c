@@ -43,5 +43,5 @@ void culler_host_init(culler_host *h, uint64_t fail_at)
 {
     memset(h, 0, sizeof *h);
     failing_allocator_init(&h->memory, fail_at);
-    h->host = (cull_host){CULL_ABI, h, host_alloc, host_free, host_log, host_parallel_for, host_get_extension};
+    h->host = (cull_host){CULL_ABI, 0, h, host_alloc, host_free, host_log, host_parallel_for, host_get_extension};
 }

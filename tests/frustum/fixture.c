@@ -40,7 +40,7 @@ const cull_plugin *plugin_named(const char *id)
         fprintf(stderr, "no library: %s\n", dlerror());
         return NULL;
     }
-    const cull_entry_v0 *entry = dlsym(library, CULL_ENTRY_SYMBOL);
+    const cull_exports *entry = dlsym(library, CULL_ENTRY_SYMBOL);
     return entry && entry->abi == CULL_ABI && entry->plugin_count == 1 ? entry->plugins[0] : NULL;
 }
 

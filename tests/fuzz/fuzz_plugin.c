@@ -27,7 +27,7 @@ typedef struct sound_library {
     uint32_t bucket[1], chain[1];
     uint32_t hash[5];
     char texts[16];
-    cull_entry_v0 entry;
+    cull_exports entry;
 } sound_library;
 
 static uint32_t gnu_hash_of(const char *name)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <portcullis/culler.h>
 #undef CULL_ENTRY
-#define CULL_ENTRY __attribute__((unused)) static const cull_entry_v0 healthy_entry
+#define CULL_ENTRY __attribute__((unused)) static const cull_exports healthy_entry
 #include "../../../plugins/frustum/frustum.c"
 
 #include <time.h>
@@ -35,4 +35,4 @@ static const cull_plugin slow_plugin = {
 };
 
 static const cull_plugin *const slow_plugins[] = {&slow_plugin};
-CULL_EXPORT const cull_entry_v0 cull_entry = {CULL_ABI, 1, slow_plugins};
+CULL_EXPORT const cull_exports cull_entry = {CULL_ABI, 1, slow_plugins};
